@@ -1,0 +1,20 @@
+# One folder = one library: pagoda_library(name folder-sources...) with our warnings and include root.
+find_package(PkgConfig REQUIRED)
+
+add_library(pagoda_options INTERFACE)
+target_compile_features(pagoda_options INTERFACE cxx_std_20)
+target_compile_options(pagoda_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
+  # Bits must agree between compilers and dispatched paths (DESIGN.md section 4): no fused multiply-add.
+  -ffp-contract=off
+  $<$<BOOL:${PAGODA_WERROR}>:-Werror>)
+
+# pagoda_library(NAME SOURCES...): static library pagoda_NAME, alias Pagoda::NAME.
+function(pagoda_library name)
+  add_library(pagoda_${name} STATIC ${ARGN})
+  add_library(Pagoda::${name} ALIAS pagoda_${name})
+  target_include_directories(pagoda_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/pagoda>)
+  target_link_libraries(pagoda_${name} PRIVATE $<BUILD_INTERFACE:pagoda_options>)
+  target_compile_features(pagoda_${name} PUBLIC cxx_std_20)
+endfunction()
