@@ -10,8 +10,14 @@ target_compile_options(pagoda_options INTERFACE
   $<$<BOOL:${PAGODA_WERROR}>:-Werror>)
 
 # pagoda_library(NAME SOURCES...): static library pagoda_NAME, alias Pagoda::NAME.
+# A folder that is planned but still empty gets an empty source, so that it can be linked already.
 function(pagoda_library name)
-  add_library(pagoda_${name} STATIC ${ARGN})
+  set(sources ${ARGN})
+  if(NOT sources)
+    set(sources "${CMAKE_CURRENT_BINARY_DIR}/pagoda_${name}_empty.cpp")
+    file(CONFIGURE OUTPUT "${sources}" CONTENT "// pagoda_${name} has no sources yet.\n")
+  endif()
+  add_library(pagoda_${name} STATIC ${sources})
   add_library(Pagoda::${name} ALIAS pagoda_${name})
   target_include_directories(pagoda_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/pagoda>)
