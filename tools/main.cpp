@@ -18,6 +18,8 @@
 namespace pagoda::tools {
 namespace {
 
+constexpr const char* kCannotPrint = "standard output: cannot be written; is the disk full?";
+
 enum ExitCode { kDone = 0, kFailed = 1, kWrongUsage = 2, kInterrupted = 130 };
 
 // A signal handler has no arguments of ours, so this one pointer is global; SignalStop owns it.
@@ -75,11 +77,9 @@ int wrongUsage(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 // Output that never reached its file (a full disk, a closed pipe) is a failure too.
-void flushResults() {
+bool flushResults() {
     std::cout.flush();
-    if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-        throw Error("standard output", "", "cannot be written", "is the disk full?");
-    }
+    return std::cout && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
 }
 
 int run(int argc, char** argv) {
@@ -113,11 +113,11 @@ int run(int argc, char** argv) {
     try {
         app.parse(argc, argv);
         if (console != nullptr) console->finish();
-        flushResults();
+        if (!flushResults()) return fail(kCannotPrint, kFailed);
         return session.exitCode;
     } catch (const CLI::Success& success) {  // --help, --version
         app.exit(success);
-        return kDone;
+        return flushResults() ? kDone : fail(kCannotPrint, kFailed);
     } catch (const CLI::ParseError& error) {
         return wrongUsage(app, error);
     } catch (const Interrupted&) {
