@@ -1,0 +1,60 @@
+#include "hlod/view/node_tree.h"
+
+#include "ooc/base/error.h"
+
+#include <string>
+
+namespace pagoda::hlod {
+namespace {
+
+// Do `children` carry the ids that the parent's mask promises? Ids grow with depth, so that no set
+// of records, however hostile, can lead a traversal in circles.
+bool areChildrenOf(const ooc::NodeRecord& parent, std::span<const ooc::NodeRecord> children) {
+    if (parent.id.slot() != 0) return false;
+    size_t next = 0;
+    for (uint32_t octant = 0; octant < 8; ++octant) {
+        if (((parent.childMask >> octant) & 1u) == 0) continue;
+        if (parent.id.depth() >= ooc::kMaxDepth) return false;
+        if (children[next++].id != parent.id.child(octant)) return false;
+    }
+    for (uint32_t slot = 1; slot <= parent.extraLeafCount(); ++slot) {
+        const ooc::NodeRecord& leaf = children[next++];
+        if (leaf.id != parent.id.extra(slot) || !leaf.isLeaf()) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+Node NodeTree::root() {
+    const ooc::IndexBlock* block = index_.block(0);
+    if (block == nullptr || block->nodes.empty()) {
+        const std::string why =
+            index_.faults().empty() ? "it is empty" : index_.faults().front().what;
+        throw Error("", "index block 0", "the root of the database cannot be read: " + why,
+                    "build the database again, or fetch it again; `pagoda verify` lists all that "
+                    "is broken");
+    }
+    return node(block->nodes.front());
+}
+
+std::span<const ooc::NodeRecord> NodeTree::children(const Node& node) {
+    const ooc::NodeRecord& record = *node.record;
+    const uint32_t count = record.childCount();
+    if (count == 0) return {};
+    const ooc::IndexBlock* block = index_.block(record.childBlock);
+    if (block == nullptr) return {};
+    const size_t available = block->nodes.size();
+    if (record.childIndex > available || count > available - record.childIndex) {
+        index_.reportFault(record.childBlock, "children are beyond the end of the block");
+        return {};
+    }
+    const auto children = std::span(block->nodes).subspan(record.childIndex, count);
+    if (!areChildrenOf(record, children)) {
+        index_.reportFault(record.childBlock, "children do not belong to their parent");
+        return {};
+    }
+    return children;
+}
+
+}  // namespace pagoda::hlod

@@ -1,0 +1,57 @@
+// visibility.h: how a strategy asks what is seen. Stated here; implemented by GL queries (viewer/),
+// a software rasteriser (hlod/raster/) and tests. DESIGN.md section 8. A strategy either waits or
+// treats an unknown answer as visible, never as hidden: pictures stay right at every latency. A box
+// that holds the eye or crosses the near plane is visible, unasked. Render thread only.
+#pragma once
+
+#include "hlod/view/node_tree.h"
+#include "ooc/base/box.h"
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+namespace pagoda::hlod {
+
+// A box in model units. `axes` are orthonormal; the identity for an axis-aligned one.
+struct OrientedBox {
+    Vec3d centre{0.0}, halfSize{0.0};
+    glm::dmat3 axes{1.0};
+};
+
+// What is tested: a box, or a resident node's own mesh (paper 000).
+using QueryShape = std::variant<OrientedBox, Node>;
+
+struct QueryTicket {
+    uint64_t value = 0;
+    [[nodiscard]] bool operator==(const QueryTicket&) const = default;
+};
+
+// Counts pixels of shapes that pass the depth test against what was drawn before the query.
+class CountingVisibility {
+public:
+    virtual ~CountingVisibility() = default;
+    [[nodiscard]] virtual QueryTicket query(const QueryShape& shape) = 0;
+    // Visible pixels, or nullopt while pending. An answer delayed by F frames is pending until F
+    // later frames have begun.
+    [[nodiscard]] virtual std::optional<uint64_t> poll(QueryTicket ticket) = 0;
+    // The answer, now. A delayed one adds its frame times to the recorded (simulated) stall.
+    [[nodiscard]] virtual uint64_t wait(QueryTicket ticket) = 0;
+};
+
+// Pixels [minX, maxX) x [minY, maxY), from the top left.
+struct PixelRect {
+    int minX = 0, minY = 0, maxX = 0, maxY = 0;
+};
+
+// Asks the depth of what was drawn so far (paper 001).
+class DepthVisibility {
+public:
+    virtual ~DepthVisibility() = default;
+    // Is any pixel of the rectangle still background?
+    [[nodiscard]] virtual bool anyFree(const PixelRect& rectangle) = 0;
+    // Greatest view-space depth in the rectangle, model units; infinite where anything is free.
+    [[nodiscard]] virtual double maxDepth(const PixelRect& rectangle) = 0;
+};
+
+}  // namespace pagoda::hlod
