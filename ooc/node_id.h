@@ -19,7 +19,9 @@ struct NodeId {
     [[nodiscard]] static constexpr NodeId root() { return {}; }
     [[nodiscard]] constexpr uint64_t path() const { return value >> 4; }
     [[nodiscard]] constexpr uint32_t slot() const { return static_cast<uint32_t>(value & 15u); }
-    [[nodiscard]] constexpr int depth() const { return (std::bit_width(path()) - 1) / 3; }
+    [[nodiscard]] constexpr int depth() const {
+        return static_cast<int>((std::bit_width(path()) - 1) / 3);
+    }
     [[nodiscard]] constexpr NodeId cell() const { return {value & ~uint64_t{15}}; }
     [[nodiscard]] constexpr NodeId child(uint32_t octant) const {
         return {((path() << 3) | octant) << 4};

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,9 +47,13 @@ public:
     [[nodiscard]] const std::string& metadataFault() const noexcept { return metadataFault_; }
 
     [[nodiscard]] uint32_t blockCount() const noexcept;
+    // Every record of a block that loads is sound in itself: id, box in the lattice, page in the file,
+    // children in an existing place further on. Their ids are checked where they lie in the same block;
+    // who follows a reference into another block compares with NodeRecord::childId().
     [[nodiscard]] Loaded<IndexBlock> readBlock(uint32_t block) const;
     // The root is record 0 of block 0.
     [[nodiscard]] Loaded<std::vector<std::byte>> readPageBytes(const NodeRecord& node) const;
+    // The page decoded and held against its record: counts, box, flags, and object and material ids.
     [[nodiscard]] Loaded<Page> readPage(const NodeRecord& node) const;
 
     [[nodiscard]] Loaded<ObjectRecord> readObject(uint32_t object) const;  // loads its block: for single look-ups
@@ -62,6 +67,7 @@ public:
     };
     [[nodiscard]] const std::vector<Range>& indexRanges() const noexcept { return indexRanges_; }
     [[nodiscard]] const std::vector<Range>& objectRanges() const noexcept { return objectRanges_; }
+    // Header, directories, materials, metadata, footer; not the pages, which records hold.
     [[nodiscard]] const std::vector<Range>& otherRanges() const noexcept { return otherRanges_; }
     [[nodiscard]] const File& file() const noexcept { return file_; }
 
@@ -74,13 +80,23 @@ private:
     std::vector<MaterialRecord> materials_;
     std::string metadata_ = "{}", metadataFault_;
     std::vector<Range> indexRanges_, objectRanges_, otherRanges_;
-    uint64_t objectsPerBlock_ = 1;
+    uint64_t pagesEnd_ = 0;
 };
 
 // Walks every node, parents before children, loading index blocks as it goes (each once, one at a time
-// kept a level). `visit` returns false to skip the subtree. Faults of blocks go to `fault`.
+// kept a level). `visit(const NodeRecord&, NodeRef) -> bool` returns false to skip the subtree.
+// Faults of blocks go to `fault(uint32_t block, const std::string& why)`: that block's nodes, and all
+// below, are not visited.
 template <typename Visit, typename Fault>
 void forEachNode(const Database& database, Visit&& visit, Fault&& fault);
+
+// The same walk for who needs families: `visitor` has
+//   bool enter(const NodeRecord&, NodeRef);   // as `visit`
+//   void children(const NodeRecord& parent, std::span<const NodeRecord> children);  // before they are
+//                                             // entered; not called where their block is broken
+//   void fault(uint32_t block, const std::string& why);
+template <typename Visitor>
+void walkIndex(const Database& database, Visitor& visitor);
 
 }  // namespace pagoda::ooc
 

@@ -46,6 +46,15 @@ struct NodeRecord {
         return static_cast<uint32_t>(std::popcount(static_cast<unsigned>(childMask & 0xFFu))) +
                extraLeafCount();
     }
+    // Of the k-th child record, k < childCount(): octants in rising order, then extra leaves 1, 2, ...
+    // A reader that follows childBlock and childIndex must find this id there, or the file lies.
+    [[nodiscard]] NodeId childId(uint32_t k) const {
+        unsigned octants = childMask & 0xFFu;
+        for (; octants != 0; octants &= octants - 1, --k) {
+            if (k == 0) return id.child(static_cast<uint32_t>(std::countr_zero(octants)));
+        }
+        return id.extra(k + 1);
+    }
 };
 
 struct ObjectRecord {
