@@ -8,6 +8,7 @@
 #include <cstring>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace pagoda {
@@ -18,17 +19,18 @@ static_assert(std::endian::native == std::endian::little, "files are little-endi
 class ByteWriter {
 public:
     template <typename Value>
-        requires std::is_arithmetic_v<Value>
-    void put(Value value) {
-        putArray(std::span<const Value>(&value, 1));
-    }
+    requires std::is_arithmetic_v<Value>
+    void put(Value value) { putArray(std::span<const Value>(&value, 1)); }
     template <typename Value>
     void putArray(std::span<const Value> values) {
         static_assert(std::is_trivially_copyable_v<Value>);
         putBytes(std::as_bytes(values));
     }
     void putBytes(std::span<const std::byte> bytes) {
-        bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+        if (bytes.empty()) return;
+        const size_t end = bytes_.size();
+        bytes_.resize(end + bytes.size());
+        std::memcpy(bytes_.data() + end, bytes.data(), bytes.size());
     }
     // 7 bits a byte, least first, high bit set while more follow (LEB128).
     void putVarint(uint32_t value) {
@@ -50,7 +52,7 @@ public:
     explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes) {}
 
     template <typename Value>
-        requires std::is_arithmetic_v<Value>
+    requires std::is_arithmetic_v<Value>
     [[nodiscard]] Value get() {
         Value value{};
         getArray(std::span<Value>(&value, 1));

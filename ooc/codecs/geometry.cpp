@@ -76,8 +76,8 @@ void encodeRaw(const GeometryView& geometry, const GeometryHead& head, ByteWrite
 }
 
 std::string decodeRaw(ByteReader& in, const GeometryHead& head, Geometry& out) {
-    const uint64_t vertexBytes = (head.isWide ? 12u : 6u) + (head.hasColours ? 4u : 0u) +
-                                 (head.hasNormals ? 2u : 0u);
+    const uint64_t vertexBytes =
+        (head.isWide ? 12u : 6u) + (head.hasColours ? 4u : 0u) + (head.hasNormals ? 2u : 0u);
     const uint64_t indexBytes = head.hasWideIndices ? 4 : 2;
     const uint64_t needed =
         head.vertexCount * vertexBytes + uint64_t{head.triangleCount} * 3 * indexBytes;
@@ -172,8 +172,9 @@ std::string decodeMeshopt(ByteReader& in, const GeometryHead& head, Geometry& ou
     const std::span<const std::byte> indexStream = in.getBytes(indexStreamBytes);
     if (!in.isOk()) return "geometry streams cut short";
 
-    // A vertex stream spends at least one byte on 64 (two bits for 16 bytes of each plane), an index
-    // stream at least one on a triangle: a count beyond that is a lie, found before it costs memory.
+    // A vertex stream spends at least one byte on 64 (two bits for 16 bytes of each plane), an
+    // index stream at least one on a triangle: a count beyond that is a lie, found before it costs
+    // memory.
     const size_t strideBytes = VertexLayout(head).strideBytes;
     const uint64_t decodedBytes = uint64_t{head.vertexCount} * strideBytes;
     if (decodedBytes / 64 > vertexStreamBytes || head.triangleCount > indexStreamBytes) {
@@ -266,8 +267,8 @@ void encodeGeometry(const GeometryView& geometry, Codec codec, ByteWriter& out) 
 std::string decodeGeometry(ByteReader& in, Codec codec, Geometry& out) {
     GeometryHead head;
     if (std::string fault = head.get(in); !fault.empty()) return fault;
-    std::string fault = codec == Codec::Meshopt ? decodeMeshopt(in, head, out)
-                                                : decodeRaw(in, head, out);
+    std::string fault =
+        codec == Codec::Meshopt ? decodeMeshopt(in, head, out) : decodeRaw(in, head, out);
     if (fault.empty()) fault = checkIndices(out.indices, out.positions.size());
     return fault;
 }

@@ -1,5 +1,5 @@
-// geometry.h: vertices and triangles as bytes, for the codecs `raw` and `meshopt`; the part that mesh
-// and zipper sections share. Bytes: ooc/FORMAT.md, "Geometry". Used by page_codec.cpp only.
+// geometry.h: vertices and triangles as bytes, for the codecs `raw` and `meshopt`; the part that
+// mesh and zipper sections share. Bytes: ooc/FORMAT.md, "Geometry". Used by page_codec.cpp only.
 #pragma once
 
 #include "ooc/base/bytes.h"

@@ -35,7 +35,9 @@ struct Section {
 uint32_t zigzag(uint32_t difference) {
     return (difference << 1) ^ (0u - (difference >> 31));
 }
-uint32_t unzigzag(uint32_t value) { return (value >> 1) ^ (0u - (value & 1u)); }
+uint32_t unzigzag(uint32_t value) {
+    return (value >> 1) ^ (0u - (value & 1u));
+}
 
 void putRuns(const std::vector<MeshRun>& runs, Codec codec, ByteWriter& out) {
     MeshRun last;
@@ -193,9 +195,12 @@ std::string decodeSection(const SectionEntry& entry, std::span<const std::byte> 
 
 std::string_view codecName(Codec codec) {
     switch (codec) {
-        case Codec::Raw: return "raw";
-        case Codec::Meshopt: return "meshopt";
-        case Codec::Draco: return "draco";
+        case Codec::Raw:
+            return "raw";
+        case Codec::Meshopt:
+            return "meshopt";
+        case Codec::Draco:
+            return "draco";
     }
     return "unknown";
 }
@@ -234,8 +239,8 @@ DecodeResult decodePage(std::span<const std::byte> bytes) {
     DecodeResult result{.page = Page{}, .fault = {}};
     bool hasMesh = false;
     for (const SectionEntry& entry : entries) {
-        result.fault = decodeSection(entry, bytes.subspan(entry.offset, entry.bytes), *result.page,
-                                     hasMesh);
+        result.fault =
+            decodeSection(entry, bytes.subspan(entry.offset, entry.bytes), *result.page, hasMesh);
         if (!result.fault.empty()) return {{}, result.fault};
     }
     if (!hasMesh) return {{}, "no mesh section"};

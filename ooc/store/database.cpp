@@ -43,8 +43,7 @@ std::vector<Database::Range> toRanges(const std::vector<DirectoryEntry>& entries
     std::vector<Database::Range> ranges;
     ranges.reserve(entries.size());
     for (const DirectoryEntry& entry : entries) {
-        ranges.push_back(
-            {named(name, ranges.size()), entry.offset, entry.bytes, entry.checksum});
+        ranges.push_back({named(name, ranges.size()), entry.offset, entry.bytes, entry.checksum});
     }
     return ranges;
 }
@@ -151,10 +150,10 @@ Database Database::open(const std::filesystem::path& path) {
     database.pagesEnd_ = layout.pagesEnd;
 
     std::vector<DirectoryEntry> entries;
-    refuse(file, "index directory",
-           parseDirectory(readOrThrow(file, layout.indexDirectory, "index directory"),
-                          layout.pagesEnd, layout.indexDirectory.offset, layout.header.nodeCount,
-                          entries));
+    refuse(
+        file, "index directory",
+        parseDirectory(readOrThrow(file, layout.indexDirectory, "index directory"), layout.pagesEnd,
+                       layout.indexDirectory.offset, layout.header.nodeCount, entries));
     refuse(file, "index directory", checkBlockSizes(entries));
     database.indexRanges_ = toRanges(entries, "index block");
     refuse(file, "object directory",
@@ -248,9 +247,8 @@ Loaded<std::vector<ObjectRecord>> Database::readObjectBlock(uint32_t block) cons
     const uint64_t firstId = uint64_t{block} * kObjectsPerBlock;
     const uint64_t count = std::min<uint64_t>(header_.objectCount - firstId, kObjectsPerBlock);
     std::vector<ObjectRecord> objects;
-    std::string fault =
-        parseObjectBlock(*bytes.value, static_cast<uint32_t>(firstId),
-                         static_cast<uint32_t>(count), header_.lattice, objects);
+    std::string fault = parseObjectBlock(*bytes.value, static_cast<uint32_t>(firstId),
+                                         static_cast<uint32_t>(count), header_.lattice, objects);
     if (!fault.empty()) return {{}, std::move(fault)};
     return {std::move(objects), {}};
 }

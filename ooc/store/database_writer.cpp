@@ -27,16 +27,17 @@ std::filesystem::path folderOf(const std::filesystem::path& target) {
 }
 
 std::string temporaryPrefix(const std::filesystem::path& target) {
-    return "." + target.filename().string() + ".part-";
+    return std::string(".") + target.filename().string() + ".part-";
 }
 
 [[noreturn]] void fail(const std::filesystem::path& target, const char* action, int code) {
-    throw Error(target.string(), "", std::string(action) + ": " +
-                std::generic_category().message(code), "check the folder and its permissions");
+    throw Error(target.string(), "",
+                std::string(action) + ": " + std::generic_category().message(code),
+                "check the folder and its permissions");
 }
 
-// Makes a new file beside `target` and locks it: a lock dies with its process, so that what a killed
-// build left can be told from what another build is writing.
+// Makes a new file beside `target` and locks it: a lock dies with its process, so that what a
+// killed build left can be told from what another build is writing.
 File createTemporary(const std::filesystem::path& target, std::filesystem::path& temporary) {
     const std::filesystem::path folder = folderOf(target);
     std::error_code code;
@@ -46,7 +47,8 @@ File createTemporary(const std::filesystem::path& target, std::filesystem::path&
     }
     const std::string name = temporaryPrefix(target) + std::to_string(::getpid());
     temporary = folder / name;
-    for (int i = 2; std::filesystem::exists(std::filesystem::symlink_status(temporary, code)); ++i) {
+    for (int i = 2; std::filesystem::exists(std::filesystem::symlink_status(temporary, code));
+         ++i) {
         temporary = folder / (name + "-" + std::to_string(i));
     }
     File file = File::create(temporary);
@@ -117,8 +119,7 @@ FileRange appendObjects(File& file, std::vector<ObjectRecord>& objects) {
 
 }  // namespace
 
-DatabaseWriter::DatabaseWriter(std::filesystem::path target, bool force,
-                               uint64_t expectedPageBytes)
+DatabaseWriter::DatabaseWriter(std::filesystem::path target, bool force, uint64_t expectedPageBytes)
     : target_(std::move(target)), force_(force) {
     std::error_code code;
     const auto status = std::filesystem::symlink_status(target_, code);
@@ -156,8 +157,9 @@ uint64_t DatabaseWriter::publish(Content content) {
     layout.header = content.header;
     Header& header = layout.header;
     header.nodeCount = content.nodes.size();
-    header.leafCount = static_cast<uint64_t>(std::count_if(
-        content.nodes.begin(), content.nodes.end(), [](const NodeRecord& n) { return n.isLeaf(); }));
+    header.leafCount =
+        static_cast<uint64_t>(std::count_if(content.nodes.begin(), content.nodes.end(),
+                                            [](const NodeRecord& n) { return n.isLeaf(); }));
     header.objectCount = content.objects.size();
     header.materialCount = content.materials.size();
 

@@ -84,8 +84,8 @@ private:
 
     [[nodiscard]] Family familyBelow(uint32_t parent) const {
         const NodeRecord& node = nodes_[parent];
-        const auto first = std::lower_bound(byId_.begin(), byId_.end(),
-                                            std::pair(node.childId(0), uint32_t{0}));
+        const auto first =
+            std::lower_bound(byId_.begin(), byId_.end(), std::pair(node.childId(0), uint32_t{0}));
         const uint32_t count = node.childCount();
         const bool isThere = first != byId_.end() && first->first == node.childId(0) &&
                              nodes_.size() - first->second >= count;

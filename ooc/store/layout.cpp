@@ -46,8 +46,7 @@ std::string checkLattice(const Lattice& lattice) {
     const bool isFinite = std::isfinite(lattice.origin.x) && std::isfinite(lattice.origin.y) &&
                           std::isfinite(lattice.origin.z);
     if (!isFinite) return "lattice origin is not finite";
-    if (lattice.stepExponent < kLeastStepExponent ||
-        lattice.stepExponent > kGreatestStepExponent) {
+    if (lattice.stepExponent < kLeastStepExponent || lattice.stepExponent > kGreatestStepExponent) {
         return "lattice step 2^" + std::to_string(lattice.stepExponent);
     }
     if (lattice.extentBits < 1 || lattice.extentBits > kMaxExtentBits) {
@@ -76,8 +75,8 @@ std::string checkTiling(const FileLayout& layout, uint64_t fileBytes) {
                                layout.metadata.end(),
                                fileBytes};
     if (!std::is_sorted(std::begin(bounds), std::end(bounds))) return "parts out of order";
-    for (const FileRange* range : {&layout.indexDirectory, &layout.objectDirectory,
-                                   &layout.materials, &layout.metadata}) {
+    for (const FileRange* range :
+         {&layout.indexDirectory, &layout.objectDirectory, &layout.materials, &layout.metadata}) {
         if (range->offset > fileBytes || range->bytes > fileBytes - range->offset) {
             return "a part reaches beyond the file";
         }
@@ -125,8 +124,8 @@ std::vector<std::byte> headerBytes(const FileLayout& layout) {
     out.put(header.materialCount);
     out.put(header.fileBytes);
     out.put(layout.pagesEnd);
-    for (const FileRange* range : {&layout.indexDirectory, &layout.objectDirectory,
-                                   &layout.materials, &layout.metadata}) {
+    for (const FileRange* range :
+         {&layout.indexDirectory, &layout.objectDirectory, &layout.materials, &layout.metadata}) {
         putRange(*range, out);
     }
     while (out.size() < kHeaderBytes - sizeof(uint64_t)) out.put(uint8_t{0});
@@ -165,13 +164,13 @@ std::string parseHeader(std::span<const std::byte> bytes, uint64_t fileBytes, Fi
     header.materialCount = in.get<uint64_t>();
     header.fileBytes = in.get<uint64_t>();
     layout.pagesEnd = in.get<uint64_t>();
-    for (FileRange* range : {&layout.indexDirectory, &layout.objectDirectory, &layout.materials,
-                             &layout.metadata}) {
+    for (FileRange* range :
+         {&layout.indexDirectory, &layout.objectDirectory, &layout.materials, &layout.metadata}) {
         *range = getRange(in);
     }
     if (header.fileBytes != fileBytes) {
-        return std::to_string(header.fileBytes) + " bytes announced, " +
-               std::to_string(fileBytes) + " there";
+        return std::to_string(header.fileBytes) + " bytes announced, " + std::to_string(fileBytes) +
+               " there";
     }
     if (codec > static_cast<uint32_t>(Codec::Draco)) return "codec " + std::to_string(codec);
     header.codec = static_cast<Codec>(codec);
@@ -203,7 +202,8 @@ std::string parseDirectory(std::span<const std::byte> bytes, uint64_t begin, uin
         entry.bytes = in.get<uint32_t>();
         entry.count = in.get<uint32_t>();
         entry.checksum = in.get<uint64_t>();
-        if (entry.offset != next || entry.bytes > end - next) return "blocks leave a gap or overlap";
+        if (entry.offset != next || entry.bytes > end - next)
+            return "blocks leave a gap or overlap";
         next += entry.bytes;
         sum += entry.count;
     }
@@ -260,11 +260,13 @@ std::string checkNode(const NodeRecord& node, const Header& header, uint64_t pag
         return "page lies outside of the pages";
     }
     if ((node.childMask & 0xF000u) != 0) return "child mask";
-    if (node.isLeaf() && (node.childBlock != 0 || node.childIndex != 0)) return "leaf with children";
+    if (node.isLeaf() && (node.childBlock != 0 || node.childIndex != 0))
+        return "leaf with children";
     if (!node.isLeaf() && node.id.depth() == kMaxDepth && (node.childMask & 0xFFu) != 0) {
         return "children below the deepest level";
     }
-    if (node.opaqueTriangleCount > node.triangleCount) return "more opaque triangles than triangles";
+    if (node.opaqueTriangleCount > node.triangleCount)
+        return "more opaque triangles than triangles";
     if (node.subtreeTriangles > header.triangleCount) return "triangles below";
     if (node.isLeaf() && node.subtreeTriangles != node.triangleCount) return "triangles below";
     return {};

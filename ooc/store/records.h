@@ -26,8 +26,8 @@ enum NodeFlags : uint16_t {
 
 // One node, as index blocks hold it. A node's children stand side by side in one block.
 struct NodeRecord {
-    NodeId id;
-    Box3i box;                    // tight around its mesh and all below it; lattice points
+    NodeId id{};
+    Box3i box{};                  // tight around its mesh and all below it; lattice points
     double errorModelUnits = 0;   // mesh against the input it stands for, both ways; 0 for a leaf
                                   // but for the snap; never below a child's
     uint16_t childMask = 0;       // bits 0..7: octants; bits 8..11: number of extra leaves
@@ -58,26 +58,26 @@ struct NodeRecord {
 };
 
 struct ObjectRecord {
-    std::string name;
+    std::string name{};
     uint32_t parent = UINT32_MAX;  // UINT32_MAX: none
     uint32_t source = 0;           // index into metadata "sources"
-    Box3i box;                     // of its own triangles, lattice; empty when it has none
+    Box3i box{};                   // of its own triangles, lattice; empty when it has none
     uint64_t triangleCount = 0;    // its own, in the leaves
 };
 
 struct MaterialRecord {
-    std::string name;
+    std::string name{};
     uint32_t colour = 0xFFFFFFFFu;  // RGBA8 sRGB
     bool isTranslucent = false;
 };
 
 struct Header {
-    Lattice lattice;
+    Lattice lattice{};
     Codec codec = Codec::Meshopt;
     uint64_t nodeCount = 0, leafCount = 0;
     uint32_t levelCount = 0;
     uint64_t triangleCount = 0;  // in the leaves
-    OrderFreeSum triangleSum;    // over the leaves' triangles: triangleHashItem()
+    OrderFreeSum triangleSum{};   // over the leaves' triangles: triangleHashItem()
     uint32_t nodeTriangles = 0;  // the budget N
     uint64_t objectCount = 0, materialCount = 0;
     uint64_t fileBytes = 0;
