@@ -1,0 +1,11 @@
+#include "ooc/readers/obj_reader.h"
+
+#include "ooc/base/error.h"
+
+namespace pagoda::ooc {
+
+std::unique_ptr<Reader> openObjReader(const std::filesystem::path& path, const ReaderOptions&) {
+    throw Error(path.string(), "", "not read yet", "");
+}
+
+}  // namespace pagoda::ooc
