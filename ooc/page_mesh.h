@@ -9,7 +9,8 @@
 
 namespace pagoda::ooc {
 
-// Normals as octahedral coordinates, snorm8 each. (0, -128) in y says "none": shade the triangle flat.
+// Normals as octahedral coordinates, snorm8 each. (0, -128) in y says "none": shade the triangle
+// flat.
 struct OctNormal {
     int8_t u = 0, v = -128;
     [[nodiscard]] bool operator==(const OctNormal&) const = default;
@@ -27,29 +28,33 @@ struct MeshRun {
 };
 
 // Parts a page's triangles are sorted by: the 8 octants of the node's cell, opaque ones first, then
-// the 8 octants' translucent ones; partStart[p] is the first triangle of part p, partStart[16] their
-// number. Any part may be drawn alone (DESIGN.md section 6, step 3).
+// the 8 octants' translucent ones; partStart[p] is the first triangle of part p, partStart[16]
+// their number. Any part may be drawn alone (DESIGN.md section 6, step 3).
 inline constexpr int kPageParts = 16;
 
 struct PageMesh {
-    std::vector<Vec3i> positions;      // lattice points of the database, not relative
-    std::vector<uint32_t> colours;     // a vertex, RGBA8 sRGB, red in the low byte; empty: constantColour
+    std::vector<Vec3i> positions;  // lattice points of the database, not relative
+    std::vector<uint32_t>
+        colours;  // a vertex, RGBA8 sRGB, red in the low byte; empty: constantColour
     uint32_t constantColour = 0xFFFFFFFFu;
-    std::vector<OctNormal> normals;    // a vertex; empty: every triangle is shaded flat
-    std::vector<uint32_t> indices;     // 3 a triangle, < positions.size()
-    std::vector<MeshRun> runs;         // their triangle counts sum to triangleCount()
+    std::vector<OctNormal> normals;  // a vertex; empty: every triangle is shaded flat
+    std::vector<uint32_t> indices;   // 3 a triangle, < positions.size()
+    std::vector<MeshRun> runs;       // their triangle counts sum to triangleCount()
     std::array<uint32_t, kPageParts + 1> partStart{};
 
-    [[nodiscard]] uint32_t triangleCount() const { return static_cast<uint32_t>(indices.size() / 3); }
+    [[nodiscard]] uint32_t triangleCount() const {
+        return static_cast<uint32_t>(indices.size() / 3);
+    }
     [[nodiscard]] uint32_t vertexCount() const { return static_cast<uint32_t>(positions.size()); }
     [[nodiscard]] uint32_t opaqueTriangleCount() const { return partStart[8]; }
     [[nodiscard]] Box3i box() const;
     [[nodiscard]] bool operator==(const PageMesh&) const = default;
 };
 
-// Triangles joining two nodes of which exactly one is refined (SEAMS.md). Empty while borders are locked.
+// Triangles joining two nodes of which exactly one is refined (SEAMS.md). Empty while borders are
+// locked.
 struct Zipper {
-    uint64_t neighbour = 0;              // NodeId::value
+    uint64_t neighbour = 0;  // NodeId::value
     std::vector<Vec3i> positions;
     std::vector<uint32_t> indices;
     [[nodiscard]] bool operator==(const Zipper&) const = default;

@@ -1,7 +1,7 @@
 // page_codec.h: a node's mesh as bytes and back. DESIGN.md section 5; bytes: ooc/FORMAT.md.
-// A page is a table of tagged sections. Encoding is deterministic; decoding trusts nothing: sizes are
-// checked before memory is taken and indices before they are used. All functions are free of shared
-// state: call them from any thread.
+// A page is a table of tagged sections. Encoding is deterministic; decoding trusts nothing: sizes
+// are checked before memory is taken and indices before they are used. All functions are free of
+// shared state: call them from any thread.
 #pragma once
 
 #include "ooc/page_mesh.h"
@@ -25,14 +25,15 @@ struct Page {
     std::vector<Zipper> zippers;
 };
 
-// `page` may come back in another order of vertices, and of triangles within a run (Draco reorders):
-// decodePage(encodePage(p)) holds the same triangles in the same runs and parts, with the same corner order up to
-// rotation. `mesh` is valid (asserted).
+// `page` may come back in another order of vertices, and of triangles within a run (Draco
+// reorders): decodePage(encodePage(p)) holds the same triangles in the same runs and parts, with
+// the same corner order up to rotation. `mesh` is valid (asserted).
 [[nodiscard]] std::vector<std::byte> encodePage(const Page& page, Codec codec);
 
 struct DecodeResult {
     std::optional<Page> page;
-    std::string fault;  // why not, when there is no page: "mesh section: index 70000 of 12 vertices"
+    std::string
+        fault;  // why not, when there is no page: "mesh section: index 70000 of 12 vertices"
 };
 [[nodiscard]] DecodeResult decodePage(std::span<const std::byte> bytes);
 

@@ -62,6 +62,7 @@ std::string checkObjectBlockSizes(const std::vector<DirectoryEntry>& blocks) {
     for (const DirectoryEntry& block : blocks) {
         const bool isLast = &block == &blocks.back();
         if (block.count == 0 || block.count > kObjectsPerBlock ||
+            block.bytes < block.count * kObjectRecordBytes ||
             (!isLast && block.count != kObjectsPerBlock)) {
             return "block of " + std::to_string(block.count) + " objects";
         }

@@ -1,7 +1,8 @@
 // database.h: reads a database. Opening costs the header, the block directories, materials and
 // metadata: it does not grow with what is never looked at. Nothing read is trusted.
-// Const calls may come from any thread at once. Faults of single pages and blocks are values, so that
-// a flipped bit costs that page alone (DESIGN.md section 13); open() throws Error for the rest.
+// Const calls may come from any thread at once. Faults of single pages and blocks are values, so
+// that a flipped bit costs that page alone (DESIGN.md section 13); open() throws Error for the
+// rest.
 #pragma once
 
 #include "ooc/base/file.h"
@@ -41,22 +42,26 @@ public:
     [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
     [[nodiscard]] const Header& header() const noexcept { return header_; }
     [[nodiscard]] const std::string& headerFault() const noexcept { return headerFault_; }
-    [[nodiscard]] const std::vector<MaterialRecord>& materials() const noexcept { return materials_; }
+    [[nodiscard]] const std::vector<MaterialRecord>& materials() const noexcept {
+        return materials_;
+    }
     // JSON text; "{}" and a fault when its checksum is wrong.
     [[nodiscard]] const std::string& metadataJson() const noexcept { return metadata_; }
     [[nodiscard]] const std::string& metadataFault() const noexcept { return metadataFault_; }
 
     [[nodiscard]] uint32_t blockCount() const noexcept;
-    // Every record of a block that loads is sound in itself: id, box in the lattice, page in the file,
-    // children in an existing place further on. Their ids are checked where they lie in the same block;
-    // who follows a reference into another block compares with NodeRecord::childId().
+    // Every record of a block that loads is sound in itself: id, box in the lattice, page in the
+    // file, children in an existing place further on. Their ids are checked where they lie in the
+    // same block; who follows a reference into another block compares with NodeRecord::childId().
     [[nodiscard]] Loaded<IndexBlock> readBlock(uint32_t block) const;
     // The root is record 0 of block 0.
     [[nodiscard]] Loaded<std::vector<std::byte>> readPageBytes(const NodeRecord& node) const;
-    // The page decoded and held against its record: counts, box, flags, and object and material ids.
+    // The page decoded and held against its record: counts, box, flags, and object and material
+    // ids.
     [[nodiscard]] Loaded<Page> readPage(const NodeRecord& node) const;
 
-    [[nodiscard]] Loaded<ObjectRecord> readObject(uint32_t object) const;  // loads its block: for single look-ups
+    [[nodiscard]] Loaded<ObjectRecord> readObject(
+        uint32_t object) const;  // loads its block: for single look-ups
     [[nodiscard]] uint32_t objectBlockCount() const noexcept;
     [[nodiscard]] Loaded<std::vector<ObjectRecord>> readObjectBlock(uint32_t block) const;
 
@@ -83,16 +88,17 @@ private:
     uint64_t pagesEnd_ = 0;
 };
 
-// Walks every node, parents before children, loading index blocks as it goes (each once, one at a time
-// kept a level). `visit(const NodeRecord&, NodeRef) -> bool` returns false to skip the subtree.
-// Faults of blocks go to `fault(uint32_t block, const std::string& why)`: that block's nodes, and all
-// below, are not visited.
+// Walks every node, parents before children, loading index blocks as it goes (each once, one at a
+// time kept a level). `visit(const NodeRecord&, NodeRef) -> bool` returns false to skip the
+// subtree. Faults of blocks go to `fault(uint32_t block, const std::string& why)`: that block's
+// nodes, and all below, are not visited.
 template <typename Visit, typename Fault>
 void forEachNode(const Database& database, Visit&& visit, Fault&& fault);
 
 // The same walk for who needs families: `visitor` has
 //   bool enter(const NodeRecord&, NodeRef);   // as `visit`
-//   void children(const NodeRecord& parent, std::span<const NodeRecord> children);  // before they are
+//   void children(const NodeRecord& parent, std::span<const NodeRecord> children);  // before they
+//   are
 //                                             // entered; not called where their block is broken
 //   void fault(uint32_t block, const std::string& why);
 template <typename Visitor>

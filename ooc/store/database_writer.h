@@ -1,7 +1,7 @@
 // database_writer.h: writes one database beside its target and publishes it whole.
-// Order of calls: addPage() for every node in file order, then publish() once. Until publish() ends,
-// nothing exists under the target's name; a writer destroyed before that leaves nothing behind.
-// One thread. DESIGN.md section 4, step 6.
+// Order of calls: addPage() for every node in file order, then publish() once. Until publish()
+// ends, nothing exists under the target's name; a writer destroyed before that leaves nothing
+// behind. One thread. DESIGN.md section 4, step 6.
 #pragma once
 
 #include "ooc/base/file.h"
@@ -27,13 +27,13 @@ public:
     uint64_t addPage(std::span<const std::byte> page);
 
     struct Content {
-        Header header;                      // fileBytes and counts of tables are filled in here
-        std::vector<NodeRecord> nodes;      // root first; the children of a node side by side, octants
-                                            // first, then extra leaves; childBlock and childIndex are
-                                            // filled in here
+        Header header;                  // fileBytes and counts of tables are filled in here
+        std::vector<NodeRecord> nodes;  // root first; the children of a node side by side, octants
+                                        // first, then extra leaves; childBlock and childIndex are
+                                        // filled in here
         std::vector<ObjectRecord> objects;
         std::vector<MaterialRecord> materials;
-        std::string metadataJson;           // UTF-8
+        std::string metadataJson;  // UTF-8
     };
     // Writes index, tables, metadata and footer, syncs and renames. Returns the file's size.
     uint64_t publish(Content content);
@@ -45,8 +45,8 @@ private:
     File file_;
 };
 
-// What an earlier build that was killed left beside `target` (temporary files of this writer), to be
-// said and removed.
+// What an earlier build that was killed left beside `target` (temporary files of this writer), to
+// be said and removed.
 [[nodiscard]] std::vector<std::filesystem::path> findLeftovers(const std::filesystem::path& target);
 
 }  // namespace pagoda::ooc
