@@ -7,6 +7,8 @@ target_compile_options(pagoda_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
   # Bits must agree between compilers and dispatched paths (DESIGN.md section 4): no fused multiply-add.
   -ffp-contract=off
+  # Asserts name files from the repository's root, not the folder this was built in.
+  -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=
   $<$<BOOL:${PAGODA_WERROR}>:-Werror>)
 
 # pagoda_library(NAME SOURCES...): static library pagoda_NAME, alias Pagoda::NAME.
@@ -19,8 +21,9 @@ function(pagoda_library name)
   endif()
   add_library(pagoda_${name} STATIC ${sources})
   add_library(Pagoda::${name} ALIAS pagoda_${name})
+  set_property(GLOBAL APPEND PROPERTY PAGODA_LIBRARIES ${name})
   target_include_directories(pagoda_${name} PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/pagoda>)
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/pagoda>)
   target_link_libraries(pagoda_${name} PRIVATE $<BUILD_INTERFACE:pagoda_options>)
   target_compile_features(pagoda_${name} PUBLIC cxx_std_20)
 endfunction()

@@ -14,6 +14,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace pagoda::tools {
 namespace {
@@ -70,9 +71,13 @@ void addCommands([[maybe_unused]] CLI::App& app, [[maybe_unused]] Session& sessi
 }
 
 int wrongUsage(const CLI::App& app, const CLI::ParseError& error) {
-    std::string command;
+    std::string what = error.what(), command;
     for (const CLI::App* sub : app.get_subcommands()) command += " " + sub->get_name();
-    std::cerr << "pagoda: " << error.what() << "; see pagoda" << command << " --help\n";
+    const std::vector<std::string> unknown = app.remaining();
+    if (command.empty()) {
+        what = unknown.empty() ? "no command given" : "no command is called " + unknown.front();
+    }
+    std::cerr << "pagoda: " << what << "; see pagoda" << command << " --help\n";
     return kWrongUsage;
 }
 
