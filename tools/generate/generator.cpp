@@ -1,0 +1,21 @@
+#include "tools/generate/generator.h"
+
+#include <algorithm>
+
+namespace pagoda::tools {
+
+const std::vector<Generator>& generators() {
+    static const std::vector<Generator> kGenerators{
+        {"torus", "a closed, noisy surface like a scan", 1'000'000, generateTorus},
+    };
+    return kGenerators;
+}
+
+const Generator* findGenerator(std::string_view name) {
+    const std::vector<Generator>& all = generators();
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [&](const Generator& each) { return each.name == name; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+}  // namespace pagoda::tools
