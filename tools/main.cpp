@@ -75,7 +75,7 @@ int wrongUsage(const CLI::App& app, const CLI::ParseError& error) {
     for (const CLI::App* sub : app.get_subcommands()) command += " " + sub->get_name();
     const std::vector<std::string> unknown = app.remaining();
     if (command.empty()) {
-        what = unknown.empty() ? "no command given" : "no command is called " + unknown.front();
+        what = unknown.empty() ? "no command given" : "there is no command or option " + unknown.front();
     }
     std::cerr << "pagoda: " << what << "; see pagoda" << command << " --help\n";
     return kWrongUsage;
