@@ -71,7 +71,7 @@ PlyReader::Place PlyReader::walk(size_t element, ProgressMeter* meter, Visit vis
 }
 
 PlyReader::Place PlyReader::loadVertices(size_t element, ProgressMeter& meter) {
-    vertices_.emplace(source_, header_.elements[element], scratchFolder_);
+    vertices_.emplace(source_, header_.elements[element], header_.dataLine - 1, scratchFolder_);
     if (vertices_->isPlainCopy(header_.format)) {
         InputStream stream(source_, &meter);
         stream.seek(places_[element].offset);
@@ -128,7 +128,8 @@ void PlyReader::read(TriangleSink& sink) {
         hasFaceColours |= role == Role::Faces && findPlyFaces(element)->colour.isComplete();
     }
     if (hasFaces && !vertices_) {
-        source_.fail("header", "there are faces but no vertices", "write the file again");
+        source_.failAtLine(header_.dataLine - 1, "there are faces but no vertices",
+                           "write the file again");
     }
     if (!hasFaces) return sayWhatIsIgnored(sink);
 

@@ -32,15 +32,16 @@ uint32_t plyColourChannel(double value, PlyScalar type) {
 }
 
 PlyVertices::PlyVertices(const SourceFile& source, const PlyElement& element,
-                         const std::filesystem::path& scratchFolder)
+                         uint64_t headerEndLine, const std::filesystem::path& scratchFolder)
     : source_(source), element_(element), scratch_(scratchFolder) {
     constexpr std::string_view kAxes[] = {"x", "y", "z"};
     constexpr std::string_view kNormals[] = {"nx", "ny", "nz"};
     for (size_t axis = 0; axis < 3; ++axis) {
         const auto found = element.find({kAxes[axis]});
         if (!found) {
-            source.fail("header", "vertices have no property " + std::string(kAxes[axis]),
-                        "write the file again with x, y and z");
+            source.failAtLine(headerEndLine,
+                              "vertices have no property " + std::string(kAxes[axis]),
+                              "write the file again with x, y and z");
         }
         positionProperties_[axis] = *found;
         isDouble_ |= needsDouble(element.properties[*found].type);

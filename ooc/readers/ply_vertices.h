@@ -27,7 +27,7 @@ struct PlyColourProperties {
 class PlyVertices {
 public:
     // Throws Error if the element has no x, y, z.
-    PlyVertices(const SourceFile& source, const PlyElement& element,
+    PlyVertices(const SourceFile& source, const PlyElement& element, uint64_t headerEndLine,
                 const std::filesystem::path& scratchFolder);
 
     // Reads all vertices; once.

@@ -1,6 +1,7 @@
 #include "ooc/readers/source_file.h"
 
 #include "ooc/base/error.h"
+#include "ooc/readers/utf16.h"
 
 #include <algorithm>
 #include <cstring>
@@ -9,13 +10,26 @@
 namespace pagoda::ooc {
 
 SourceFile::SourceFile(const std::filesystem::path& path)
-    : file_(File::openForReading(path)),
-      sizeBytes_(file_.sizeBytes()),
-      changeStamp_(file_.changeStamp()) {
+    : original_(File::openForReading(path)),
+      sizeBytes_(original_.sizeBytes()),
+      changeStamp_(original_.changeStamp()) {}
+
+SourceFile SourceFile::openText(const std::filesystem::path& path,
+                                const std::filesystem::path& scratchFolder) {
+    SourceFile source(path);
+    std::byte mark[2] = {};
+    if (source.original_.readSomeAt(0, mark) < 2) return source;
+    const bool isLittle = mark[0] == std::byte{0xFF} && mark[1] == std::byte{0xFE};
+    const bool isBig = mark[0] == std::byte{0xFE} && mark[1] == std::byte{0xFF};
+    if (!isLittle && !isBig) return source;
+    File copy = File::createScratch(scratchFolder);
+    source.sizeBytes_ = copyUtf16AsUtf8(source, isBig, copy);
+    source.copy_ = std::move(copy);
+    return source;
 }
 
 void SourceFile::checkUnchanged() const {
-    if (file_.changeStamp() != changeStamp_) {
+    if (original_.changeStamp() != changeStamp_) {
         fail("", "the file was written while it was read", "start again when it is complete");
     }
 }

@@ -17,9 +17,13 @@ namespace pagoda::ooc {
 class SourceFile {
 public:
     explicit SourceFile(const std::filesystem::path& path);
+    // Text that begins with a byte order mark of UTF-16 is copied to scratch as UTF-8 and read from
+    // there; errors still name `path`, and lines keep their numbers. Other files as they are.
+    [[nodiscard]] static SourceFile openText(const std::filesystem::path& path,
+                                             const std::filesystem::path& scratchFolder);
 
-    [[nodiscard]] const File& file() const noexcept { return file_; }
-    [[nodiscard]] const std::string& path() const noexcept { return file_.path(); }
+    [[nodiscard]] const File& file() const noexcept { return copy_.isOpen() ? copy_ : original_; }
+    [[nodiscard]] const std::string& path() const noexcept { return original_.path(); }
     [[nodiscard]] uint64_t sizeBytes() const noexcept { return sizeBytes_; }
 
     // Throws Error if the file was written since it was opened. One fstat.
@@ -31,7 +35,8 @@ public:
     [[noreturn]] void failCutShort(std::string place, std::string what) const;
 
 private:
-    File file_;
+    File original_;
+    File copy_;  // open: what is read in its place
     uint64_t sizeBytes_ = 0;
     uint64_t changeStamp_ = 0;
 };

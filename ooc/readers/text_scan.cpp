@@ -42,6 +42,12 @@ const char* plainNumber(const char* at, const char* end, double& value) {
     return p;
 }
 
+// "-1.#IND", "1.#QNAN", "1.#INF": how old C libraries of Windows print what is not finite.
+bool isMicrosoftNan(const char* at, const char* end) {
+    if (at != end && (*at == '-' || *at == '+')) ++at;
+    return end - at > 3 && std::string_view(at, 3) == "1.#";
+}
+
 }  // namespace
 
 std::string_view TextCursor::word() {
@@ -64,6 +70,11 @@ bool TextCursor::number(double& value) {
     skipBlanks();
     if (const char* after = plainNumber(at, end, value)) {
         at = after;
+        return true;
+    }
+    if (isMicrosoftNan(at, end)) {
+        (void)word();
+        value = std::numeric_limits<double>::quiet_NaN();
         return true;
     }
     const char* first = at != end && *at == '+' ? at + 1 : at;

@@ -31,7 +31,8 @@ struct TextCursor {
     // All that is left, without blanks at either side: names hold spaces.
     [[nodiscard]] std::string_view rest();
 
-    // The next word as a number: decimal with or without exponent, a leading '+', nan, inf. False
+    // The next word as a number: decimal with or without exponent, a leading '+', nan, inf (as
+    // C libraries print them). False
     // (and the cursor stays at the word) if it is something else.
     [[nodiscard]] bool number(double& value);
     // The next word as a whole number; false if it is something else or beyond 64 bits.

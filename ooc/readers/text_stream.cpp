@@ -10,6 +10,11 @@ TextStream::TextStream(const SourceFile& source, ProgressMeter* meter, uint64_t 
     stream_.seek(offset);
     const std::span<const std::byte> start = stream_.ahead(1);
     if (start.empty()) return;
+    constexpr std::string_view kUtf8Mark = "\xEF\xBB\xBF";
+    if (offset == 0 && start.size() >= kUtf8Mark.size() &&
+        std::memcmp(start.data(), kUtf8Mark.data(), kUtf8Mark.size()) == 0) {
+        stream_.take(kUtf8Mark.size());
+    }
     if (std::memchr(start.data(), '\n', start.size()) == nullptr &&
         std::memchr(start.data(), '\r', start.size()) != nullptr) {
         lineEnd_ = '\r';
