@@ -1,0 +1,34 @@
+// frame_target.h: what a frame is drawn into: colour (sRGB8 + coverage), two R32UI ids, float
+// depth. Render thread only, context current.
+#pragma once
+
+#include "viewer/gl_names.h"
+#include "viewer/picture.h"
+
+namespace pagoda::viewer {
+
+class FrameTarget {
+public:
+    // Throws Error when the driver has no textures of that size.
+    FrameTarget(int widthPx, int heightPx);
+
+    // Binds it, clears it, and paints the background where coverage is 0.
+    void begin(const Background& background);
+    // Which outputs the next draws write: all, or colour alone, blended, with depth left as it is.
+    void beginOpaque();
+    void beginTranslucent();
+    // Waits for the GPU and reads everything but `nodes`. Depths are near / value along the view.
+    [[nodiscard]] Picture read(double nearModelUnits) const;
+
+    [[nodiscard]] int widthPx() const noexcept { return widthPx_; }
+    [[nodiscard]] int heightPx() const noexcept { return heightPx_; }
+
+private:
+    int widthPx_, heightPx_;
+    GlTexture colour_, nodeOrdinals_, triangles_, depth_;
+    GlFramebuffer framebuffer_;
+    GlProgram backgroundProgram_;
+    GlVertexArray emptyArray_;
+};
+
+}  // namespace pagoda::viewer

@@ -1,0 +1,114 @@
+#include "viewer/node_drawer.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+
+namespace pagoda::viewer {
+namespace {
+
+template <typename T>
+void fill(GlId buffer, const std::vector<T>& items) {
+    glNamedBufferData(buffer, static_cast<GLsizeiptr>(items.size() * sizeof(T)), items.data(),
+                      GL_STREAM_DRAW);
+}
+
+}  // namespace
+
+NodeDrawer::NodeDrawer(const MeshStore& store)
+    : store_(store),
+      array_(makeNodeVertexArray()),
+      commandBuffer_(makeBuffer()),
+      instanceBuffer_(makeBuffer()),
+      sortedBuffer_(makeBuffer()) {
+    glVertexArrayVertexBuffer(array_.id(), 0, store.buffer(), 0, sizeof(GpuVertex));
+    glVertexArrayVertexBuffer(array_.id(), 1, instanceBuffer_.id(), 0, sizeof(DrawInstance));
+}
+
+void NodeDrawer::bind(const NodeProgram& program, const LatticeView& view) {
+    view_ = view;
+    glUseProgram(program.id());
+    glBindVertexArray(array_.id());
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commandBuffer_.id());
+}
+
+uint64_t NodeDrawer::drawOpaque(std::span<const DrawItem> items) {
+    uint64_t triangles = 0;
+    for (const DrawItem& item : items) {
+        const GpuPage& page = store_.page(item.page);
+        add(page, page.firstIndex, page.opaqueTriangles, item.nodeOrdinal, 0);
+        triangles += page.opaqueTriangles;
+    }
+    submit(store_.buffer());
+    return triangles;
+}
+
+uint64_t NodeDrawer::drawZippers(std::span<const DrawItem> items,
+                                 const std::function<bool(cache::PageId)>& isRefined,
+                                 uint64_t& stripCount) {
+    uint64_t triangles = 0;
+    for (const DrawItem& item : items) {
+        const GpuPage& page = store_.page(item.page);
+        for (const GpuPage::Strip& strip : page.zippers) {
+            if (isRefined({item.page.database, ooc::NodeId{strip.neighbour}})) continue;
+            add(page, page.firstIndex + 3 * strip.firstTriangle, strip.triangleCount,
+                item.nodeOrdinal, strip.firstTriangle);
+            triangles += strip.triangleCount;
+            ++stripCount;
+        }
+    }
+    submit(store_.buffer());
+    return triangles;
+}
+
+uint64_t NodeDrawer::drawTranslucent(std::span<const DrawItem> items) {
+    uint64_t triangles = 0;
+    sortedIndices_.clear();
+    for (const DrawItem& item : items) {
+        const GpuPage& page = store_.page(item.page);
+        const auto count = static_cast<uint32_t>(page.translucentCentroids.size());
+        add(page, static_cast<uint32_t>(sortedIndices_.size()), count, item.nodeOrdinal, 0);
+        appendSorted(page);
+        triangles += count;
+    }
+    if (!sortedIndices_.empty()) fill(sortedBuffer_.id(), sortedIndices_);
+    submit(sortedBuffer_.id());
+    return triangles;
+}
+
+void NodeDrawer::appendSorted(const GpuPage& page) {
+    const Vec3f eye = view_.eye - Vec3f(view_.offsetOf(page.origin));
+    order_.clear();
+    for (uint32_t i = 0; i < page.translucentCentroids.size(); ++i) {
+        order_.emplace_back(-glm::dot(view_.rowW, page.translucentCentroids[i] - eye), i);
+    }
+    std::sort(order_.begin(), order_.end());  // farthest first, then by number: a total order
+    for (const auto& [depth, triangle] : order_) {
+        for (uint32_t corner = 0; corner < 3; ++corner) {
+            sortedIndices_.push_back(page.translucentIndices[3 * triangle + corner]);
+        }
+    }
+}
+
+void NodeDrawer::add(const GpuPage& page, uint32_t firstIndex, uint32_t triangleCount,
+                     uint32_t nodeOrdinal, uint32_t firstTriangle) {
+    if (triangleCount == 0) return;
+    const auto instance = static_cast<uint32_t>(instances_.size());
+    commands_.push_back(
+        {3 * triangleCount, 1, firstIndex, static_cast<int32_t>(page.baseVertex), instance});
+    instances_.push_back({view_.offsetOf(page.origin), nodeOrdinal, firstTriangle});
+}
+
+void NodeDrawer::submit(GlId indexBuffer) {
+    if (!commands_.empty()) {
+        fill(commandBuffer_.id(), commands_);
+        fill(instanceBuffer_.id(), instances_);
+        glVertexArrayElementBuffer(array_.id(), indexBuffer);
+        glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_SHORT, nullptr,
+                                    static_cast<GLsizei>(commands_.size()), sizeof(Command));
+    }
+    commands_.clear();
+    instances_.clear();
+}
+
+}  // namespace pagoda::viewer

@@ -1,0 +1,169 @@
+#include "viewer/node_program.h"
+
+#include "ooc/base/error.h"
+
+#include <epoxy/gl.h>
+
+#include <cstddef>
+#include <string>
+
+namespace pagoda::viewer {
+namespace {
+
+constexpr const char* kVertexShader = R"(#version 450 core
+layout(location = 0) in ivec3 positionSteps;   // from the page's origin
+layout(location = 1) in vec4 colourSrgb;
+layout(location = 2) in ivec2 normalOct;       // v = -128: none
+layout(location = 3) in ivec3 offsetSteps;     // of the page's origin from the camera's cell
+layout(location = 4) in uvec2 ordinalAndFirst;
+
+layout(location = 0) uniform vec3 eye;         // from the camera's cell, in steps
+layout(location = 1) uniform vec3 rowX;
+layout(location = 2) uniform vec3 rowY;
+layout(location = 3) uniform vec3 rowW;
+layout(location = 4) uniform float nearSteps;
+
+invariant gl_Position;
+layout(location = 0) out vec3 fromEye;
+layout(location = 1) out vec3 normal;          // zero: none
+layout(location = 2) out vec4 albedo;          // linear
+layout(location = 3) flat out uvec2 ids;
+
+vec3 decodeNormal(ivec2 oct) {
+    if (oct.y == -128) return vec3(0.0);
+    vec2 square = max(vec2(oct) / 127.0, vec2(-1.0));
+    vec3 n = vec3(square, 1.0 - abs(square.x) - abs(square.y));
+    if (n.z < 0.0) {
+        vec2 signs = vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
+        n.xy = (1.0 - abs(n.yx)) * signs;
+    }
+    return normalize(n);
+}
+
+vec3 linearFromSrgb(vec3 c) {
+    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
+}
+
+void main() {
+    // Integers until here, one conversion, then the same arithmetic for every node.
+    precise vec3 relative = vec3(positionSteps + offsetSteps) - eye;
+    precise vec4 clip = vec4(dot(rowX, relative), dot(rowY, relative), nearSteps, dot(rowW, relative));
+    gl_Position = clip;
+    fromEye = relative;
+    normal = decodeNormal(normalOct);
+    albedo = vec4(linearFromSrgb(colourSrgb.rgb), colourSrgb.a);
+    ids = ordinalAndFirst;
+}
+)";
+
+// The light is part of the camera (a headlight, a little above and to the left, so that faces which
+// meet at an edge differ) plus a sky that is brighter than the ground. Contrast is moderate on
+// purpose: a coarse node shaded flat must look like the fine one that it stands for.
+constexpr const char* kFragmentShader = R"(#version 450 core
+layout(location = 5) uniform vec3 towardsLight;  // added to the direction to the eye
+layout(location = 6) uniform vec3 worldUp;
+
+layout(location = 0) in vec3 fromEye;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in vec4 albedo;
+layout(location = 3) flat in uvec2 ids;
+
+layout(location = 0) out vec4 colour;  // linear: the framebuffer encodes sRGB
+layout(location = 1) out uint nodeOrdinal;
+layout(location = 2) out uint triangle;
+
+void main() {
+    vec3 towardsEye = -normalize(fromEye);
+    vec3 n = normal;
+    // A triangle with a corner that has no normal is flat as a whole: interpolation shortens the rest.
+    if (dot(n, n) < 0.25) n = cross(dFdx(fromEye), dFdy(fromEye));
+    float size = length(n);
+    n = size > 0.0 ? n / size : towardsEye;
+    if (dot(n, towardsEye) < 0.0) n = -n;
+    float lamp = max(dot(n, normalize(towardsEye + towardsLight)), 0.0);
+    float sky = 0.5 + 0.5 * dot(n, worldUp);
+    float light = 0.22 + 0.26 * sky + 0.50 * lamp;
+    colour = vec4(albedo.rgb * light, albedo.a);
+    nodeOrdinal = ids.x;
+    triangle = ids.y + uint(gl_PrimitiveID);
+}
+)";
+
+enum Location { kEye, kRowX, kRowY, kRowW, kNearSteps, kTowardsLight, kWorldUp };
+
+GlId compile(GLenum stage, const char* source) {
+    const GlId shader = glCreateShader(stage);
+    glShaderSource(shader, 1, &source, nullptr);
+    glCompileShader(shader);
+    GLint isCompiled = 0;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &isCompiled);
+    if (isCompiled != 0) return shader;
+    char log[2048] = "";
+    glGetShaderInfoLog(shader, sizeof log, nullptr, log);
+    glDeleteShader(shader);
+    throw Error("", "", std::string("the driver refuses a shader: ") + log, "please report it");
+}
+
+void setVec3(GlId program, Location location, const Vec3f& value) {
+    glProgramUniform3f(program, location, value.x, value.y, value.z);
+}
+
+}  // namespace
+
+GlProgram linkProgram(const char* vertexSource, const char* fragmentSource,
+                      std::span<const char* const> captured) {
+    GlProgram program(glCreateProgram());
+    const GlId vertex = compile(GL_VERTEX_SHADER, vertexSource);
+    glAttachShader(program.id(), vertex);
+    glDeleteShader(vertex);  // freed with the program
+    const GlId fragment = compile(GL_FRAGMENT_SHADER, fragmentSource);
+    glAttachShader(program.id(), fragment);
+    glDeleteShader(fragment);
+    if (!captured.empty()) {
+        glTransformFeedbackVaryings(program.id(), static_cast<GLsizei>(captured.size()),
+                                    captured.data(), GL_INTERLEAVED_ATTRIBS);
+    }
+    glLinkProgram(program.id());
+    GLint isLinked = 0;
+    glGetProgramiv(program.id(), GL_LINK_STATUS, &isLinked);
+    if (isLinked == 0) {
+        char log[2048] = "";
+        glGetProgramInfoLog(program.id(), sizeof log, nullptr, log);
+        throw Error("", "", std::string("the driver refuses a program: ") + log,
+                    "please report it");
+    }
+    return program;
+}
+
+NodeProgram::NodeProgram(std::span<const char* const> captured)
+    : program_(linkProgram(kVertexShader, kFragmentShader, captured)) {
+}
+
+void NodeProgram::setView(const LatticeView& view, const Vec3f& worldUp) {
+    const GlId program = program_.id();
+    setVec3(program, kEye, view.eye);
+    setVec3(program, kRowX, view.rowX);
+    setVec3(program, kRowY, view.rowY);
+    setVec3(program, kRowW, view.rowW);
+    glProgramUniform1f(program, kNearSteps, view.nearSteps);
+    setVec3(program, kTowardsLight, 0.35f * view.up - 0.25f * view.right);
+    setVec3(program, kWorldUp, worldUp);
+}
+
+GlVertexArray makeNodeVertexArray() {
+    GlVertexArray array = makeVertexArray();
+    const GlId id = array.id();
+    glVertexArrayAttribIFormat(id, 0, 3, GL_INT, offsetof(GpuVertex, x));
+    glVertexArrayAttribFormat(id, 1, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(GpuVertex, colour));
+    glVertexArrayAttribIFormat(id, 2, 2, GL_BYTE, offsetof(GpuVertex, normalU));
+    glVertexArrayAttribIFormat(id, 3, 3, GL_INT, offsetof(DrawInstance, offset));
+    glVertexArrayAttribIFormat(id, 4, 2, GL_UNSIGNED_INT, offsetof(DrawInstance, nodeOrdinal));
+    for (GLuint attribute = 0; attribute < 5; ++attribute) {
+        glEnableVertexArrayAttrib(id, attribute);
+        glVertexArrayAttribBinding(id, attribute, attribute < 3 ? 0 : 1);
+    }
+    glVertexArrayBindingDivisor(id, 1, 1);
+    return array;
+}
+
+}  // namespace pagoda::viewer

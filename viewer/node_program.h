@@ -1,0 +1,48 @@
+// node_program.h: the one program that draws nodes: opaque, translucent and zippers alike, so that
+// equal lattice points run through identical arithmetic.
+#pragma once
+
+#include "viewer/gl_names.h"
+#include "viewer/lattice_view.h"
+
+#include <span>
+
+namespace pagoda::viewer {
+
+// A vertex as it lies in GPU memory: 20 bytes.
+struct GpuVertex {
+    int32_t x, y, z;          // lattice steps from the page's origin
+    uint32_t colour;          // RGBA8 sRGB, red in the low byte
+    int8_t normalU, normalV;  // ooc::OctNormal
+    int16_t unused;
+};
+static_assert(sizeof(GpuVertex) == 20);
+
+// What one draw adds to its vertices, as an instanced attribute. 20 bytes.
+struct DrawInstance {
+    Vec3i offset;            // LatticeView::offsetOf()
+    uint32_t nodeOrdinal;    // written to the item buffer; 0 is background
+    uint32_t firstTriangle;  // added to the triangle's number within the draw
+};
+static_assert(sizeof(DrawInstance) == 20);
+
+class NodeProgram {
+public:
+    // With `captured` names (outputs of the vertex shader) for transform feedback, for tests.
+    explicit NodeProgram(std::span<const char* const> captured = {});
+
+    void setView(const LatticeView& view, const Vec3f& worldUp);
+    [[nodiscard]] GlId id() const noexcept { return program_.id(); }
+
+private:
+    GlProgram program_;
+};
+
+// Compiles and links; throws Error with the driver's log (a fault of ours).
+[[nodiscard]] GlProgram linkProgram(const char* vertexSource, const char* fragmentSource,
+                                    std::span<const char* const> captured = {});
+
+// A vertex array for GpuVertex and DrawInstance: vertices at binding 0, instances at binding 1.
+[[nodiscard]] GlVertexArray makeNodeVertexArray();
+
+}  // namespace pagoda::viewer
