@@ -49,7 +49,7 @@ public:
         normals_ = mesh.GetNamedAttribute(GeometryAttribute::NORMAL);
         colours_ = mesh.GetNamedAttribute(GeometryAttribute::COLOR);
         if (positions_ == nullptr || positions_->num_components() != 3) {
-            source.fail("", "has no positions of three coordinates", "");
+            source.fail("byte 0", "has no positions of three coordinates", "export it again");
         }
         if (normals_ != nullptr && normals_->num_components() != 3) normals_ = nullptr;
         if (colours_ == nullptr) return;
@@ -97,7 +97,7 @@ DrcReader::DrcReader(const std::filesystem::path& path, const ReaderOptions& opt
     : source_(path), options_(options) {
     std::string problem;
     const auto announced = dracoAnnouncement(readFile(), problem);
-    if (!announced) source_.fail("", problem, "check that the file was copied whole");
+    if (!announced) source_.fail("byte 0", problem, "check that the file was copied whole");
     announced_ = *announced;
     if (!announced_.isMesh) announced_.faces = 0;
     if (announced_.faces > options.maxTriangles) {
@@ -133,7 +133,7 @@ void DrcReader::read(TriangleSink& sink) {
     std::string problem;
     const std::vector<std::byte> bytes = readFile();
     const std::unique_ptr<draco::Mesh> mesh = decodeDracoMesh(bytes, problem);
-    if (mesh == nullptr) source_.fail("", problem, "check that the file was copied whole");
+    if (mesh == nullptr) source_.fail("byte 0", problem, "check that the file was copied whole");
     source_.checkUnchanged();
     const uint32_t object = sink.addObject(
         {std::filesystem::path(source_.path()).stem().string(), ObjectInfo::kNoParent});

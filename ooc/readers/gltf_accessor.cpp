@@ -102,7 +102,7 @@ AccessorView::AccessorView(const SourceFile& source, const Document& document, B
     sparseCount_ = static_cast<uint64_t>(from.sparse.count);
     sparseIndexType_ = from.sparse.indices.componentType;
     if (!isUnsigned(sparseIndexType_)) {
-        source.fail(where + ".sparse.indices", "are not unsigned whole numbers", "");
+        source.fail(where + ".sparse.indices", "are not unsigned whole numbers", kValidate);
     }
     const auto indexBytes = static_cast<uint64_t>(
         tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(sparseIndexType_)));
@@ -118,7 +118,7 @@ AccessorView::AccessorView(const SourceFile& source, const Document& document, B
             source.fail(
                 where + ".sparse.indices",
                 "do not rise, or name elements that do not exist (item " + std::to_string(i) + ")",
-                "");
+                kValidate);
         }
     }
 }

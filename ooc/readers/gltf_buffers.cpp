@@ -134,7 +134,7 @@ std::span<const std::byte> Buffers::buffer(int index) {
         bytes.resize(from.sizeBytes);
         source_.file().readAt(document_.binaryOffset, bytes);
     } else {
-        source_.fail(where, "has neither a uri nor a binary chunk", "");
+        source_.fail(where, "has neither a uri nor a binary chunk", kValidate);
     }
     return buffers_[index] = std::move(bytes);
 }
@@ -144,7 +144,7 @@ std::vector<std::byte> Buffers::loadUri(const std::string& uri, uint64_t expecte
     if (!uri.starts_with("data:")) return loadFile(uri, expectedBytes, where);
     const size_t comma = uri.find(',');
     if (comma == std::string::npos || !uri.substr(0, comma).ends_with(";base64")) {
-        source_.fail(where + ".uri", "is a data URI, but not base64", "");
+        source_.fail(where + ".uri", "is a data URI, but not base64", kValidate);
     }
     MemoryLease copies(budget_);
     copies.take(4 * uri.size(), where);
@@ -215,7 +215,7 @@ std::span<const std::byte> Buffers::decoded(int bufferView) {
     const size_t index = static_cast<size_t>(bufferView);
     const MeshoptView& view = *document_.extras.meshopt[index];
     const std::string where = place("bufferViews", index) + " (meshopt compression)";
-    if (const char* problem = meshoptProblem(view)) source_.fail(where, problem, "");
+    if (const char* problem = meshoptProblem(view)) source_.fail(where, problem, kValidate);
     const std::span<const std::byte> all = buffer(view.buffer);
     if (view.byteOffset > all.size() || view.byteLength > all.size() - view.byteOffset) {
         source_.fail(where, "reaches beyond its buffer", std::string(kCutShort));

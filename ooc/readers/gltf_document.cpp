@@ -15,6 +15,7 @@ namespace {
 constexpr uint32_t kMagic = 0x46546C67;      // "glTF"
 constexpr uint32_t kJsonChunk = 0x4E4F534A;  // "JSON"
 constexpr uint32_t kBinaryChunk = 0x004E4942;
+constexpr const char* kExportAgain = "copy it again, or export it again";
 constexpr uint64_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
 // A DOM takes up to about 24 times its text ("{},{},"): the JSON may use a part of the memory only.
 constexpr uint64_t kMemoryPerJsonByte = 32;
@@ -51,8 +52,10 @@ Range findChunks(const SourceFile& source, Document& document) {
         const uint64_t size = readUint32(source, at);
         const uint32_t kind = readUint32(source, at + 4);
         const uint64_t data = at + kChunkHeaderBytes;
-        if (size > length - data) source.failAtByte(at, "chunk reaches beyond the file");
-        if (chunk == 0 && kind != kJsonChunk) source.failAtByte(at, "first chunk is not JSON");
+        if (size > length - data)
+            source.failAtByte(at, "chunk reaches beyond the file", kExportAgain);
+        if (chunk == 0 && kind != kJsonChunk)
+            source.failAtByte(at, "first chunk is not JSON", kExportAgain);
         if (chunk == 0) {
             json = {data, size};
         } else if (chunk == 1 && kind == kBinaryChunk) {
@@ -63,7 +66,7 @@ Range findChunks(const SourceFile& source, Document& document) {
         }
         at = data + size;
     }
-    if (chunk == 0) source.failAtByte(kHeaderBytes, "GLB without a JSON chunk");
+    if (chunk == 0) source.failAtByte(kHeaderBytes, "GLB without a JSON chunk", kExportAgain);
     return json;
 }
 
@@ -93,7 +96,7 @@ void parse(const SourceFile& source, const std::string& text, Document& document
     }
     if (isLoaded) return;
     std::ranges::replace(errors, '\n', ' ');
-    source.fail("", "not understood by tinygltf: " + errors, "check it with the glTF validator");
+    source.fail("JSON", "not understood by tinygltf: " + errors, kValidate);
 }
 
 }  // namespace
@@ -107,7 +110,7 @@ std::string primitivePlace(size_t mesh, size_t primitive) {
 }
 
 Document loadDocument(const SourceFile& source, uint64_t memoryBytes) {
-    if (source.sizeBytes() == 0) source.fail("", "empty file", "");
+    if (source.sizeBytes() == 0) source.failCutShort("byte 0", "empty file");
     Document document;
     Range range{0, source.sizeBytes()};
     if (source.sizeBytes() >= 4 && readUint32(source, 0) == kMagic) {

@@ -17,6 +17,9 @@
 
 namespace pagoda::ooc::gltf {
 
+// What to do about a document that breaks the specification.
+inline constexpr const char* kValidate = "check it with the glTF validator, or export it again";
+
 // "meshes[3]", "meshes[3].primitives[0]": places in the JSON, for errors.
 [[nodiscard]] std::string place(const char* section, size_t index);
 [[nodiscard]] std::string primitivePlace(size_t mesh, size_t primitive);

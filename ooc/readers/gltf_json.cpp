@@ -41,7 +41,7 @@ constexpr Field kNode[] = {{"name", Kind::Text},
                            {"translation", Kind::Numbers, "", 3}};
 constexpr Field kInstancing[] = {{"attributes", Kind::IndexMap, "accessors", 0, true}};
 constexpr Field kMesh[] = {{"name", Kind::Text}};
-constexpr Field kPrimitive[] = {{"attributes", Kind::IndexMap, "accessors", 0, true},
+constexpr Field kPrimitive[] = {{"attributes", Kind::IndexMap, "accessors"},
                                 {"indices", Kind::Index, "accessors"},
                                 {"material", Kind::Index, "materials"},
                                 {"mode", Kind::Size}};
@@ -110,7 +110,7 @@ private:
     using Where = std::string;
 
     [[noreturn]] void refuse(const Where& where, const std::string& what) const {
-        source_.fail(where, what, "check it with the glTF validator");
+        source_.fail(where, what, kValidate);
     }
     const Json& section(const char* name) const;
     size_t sizeOf(const char* name) const;
@@ -158,7 +158,9 @@ size_t Checker::sizeOf(const char* name) const {
 const Json* Checker::member(const Json& object, const char* key, const Where& where) const {
     const auto found = object.find(key);
     if (found == object.end()) return nullptr;
-    if (!found->is_object()) refuse(where + "." + key, "is not an object");
+    if (!found->is_object()) {
+        refuse(where.empty() ? Where(key) : where + "." + key, "is not an object");
+    }
     return &*found;
 }
 
@@ -292,6 +294,7 @@ Json Checker::copyNode(const Json& from, const Where& where) {
 
 Json Checker::copyPrimitive(const Json& from, const Where& where) {
     Json to = copy(from, kPrimitive, where);
+    if (!to.contains("attributes")) to["attributes"] = Json::object();  // drawn as nothing
     if (to.value("mode", uint64_t{TINYGLTF_MODE_TRIANGLES}) > TINYGLTF_MODE_TRIANGLE_FAN) {
         refuse(where + ".mode", "is not one of the modes 0 to 6");
     }
@@ -438,7 +441,7 @@ void Checker::readImages() {
 }
 
 std::string Checker::run() {
-    if (!root_.is_object()) refuse("", "the JSON is not an object");
+    if (!root_.is_object()) refuse("JSON", "is not an object");
     checkAsset();
     checkExtensions();
     readBuffers();
@@ -475,10 +478,9 @@ std::string checkJson(const SourceFile& source, std::string_view text, Extras& e
     try {
         return Checker(source, Json::parse(text), extras).run();
     } catch (const Json::parse_error& failure) {
-        source.fail("byte " + std::to_string(failure.byte) + " of the JSON", "not JSON",
-                    "check it with the glTF validator");
+        source.fail("byte " + std::to_string(failure.byte) + " of the JSON", "not JSON", kValidate);
     } catch (const Json::exception& failure) {  // numbers beyond the range of a double
-        source.fail("JSON", failure.what(), "check it with the glTF validator");
+        source.fail("JSON", failure.what(), kValidate);
     }
 }
 

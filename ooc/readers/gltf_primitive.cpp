@@ -43,9 +43,7 @@ public:
               bool isAlwaysNormalised, Out* out) const;
 
     [[nodiscard]] const std::string& where() const { return where_; }
-    [[noreturn]] void fail(const std::string& what) const {
-        source_.fail(where_, what, "check it with the glTF validator");
-    }
+    [[noreturn]] void fail(const std::string& what) const { source_.fail(where_, what, kValidate); }
 
 private:
     [[nodiscard]] const tinygltf::Accessor& accessor(const std::string& name) const {

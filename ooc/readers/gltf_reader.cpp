@@ -71,7 +71,7 @@ private:
     Emitter emitter_;
     std::vector<uint32_t> objectOfNode_;         // by index in Scene::nodes
     std::vector<uint32_t> firstInstanceObject_;  // the same; kNoParent: instances have none
-    std::vector<uint32_t> materialIds_;          // by material; the last one is glTF's default
+    std::vector<uint32_t> materialIds_;          // by material; last, if used, glTF's default
     std::map<std::string, uint64_t> ignored_;
     uint64_t trianglesDone_ = 0, bytesDone_ = 0;
 };
@@ -141,7 +141,13 @@ void Reading::addMaterials() {
     for (int i = 0; i < count; ++i) {
         materialIds_.push_back(sink_.addMaterial(materialInfo(materials_.surface(i))));
     }
-    materialIds_.push_back(sink_.addMaterial(materialInfo(materials_.surface(-1))));
+    for (const tinygltf::Mesh& mesh : document_.model.meshes) {
+        for (const tinygltf::Primitive& primitive : mesh.primitives) {
+            if (primitive.material >= 0) continue;
+            materialIds_.push_back(sink_.addMaterial(materialInfo(materials_.surface(-1))));
+            return;
+        }
+    }
 }
 
 void Reading::drawMesh(int mesh, std::span<const uint32_t> nodes) {

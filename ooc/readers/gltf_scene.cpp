@@ -67,7 +67,7 @@ uint64_t instanceCount(const SourceFile& source, const tinygltf::Model& model, s
         const uint64_t length = model.accessors[accessor].count;
         if (count && *count != length) {
             source.fail(place("nodes", index) + ".extensions." + kInstancing,
-                        "has attributes of different lengths", "check it with the glTF validator");
+                        "has attributes of different lengths", kValidate);
         }
         count = length;
     }
@@ -112,7 +112,7 @@ Scene planScene(const SourceFile& source, const Document& document, uint64_t max
         const auto index = static_cast<size_t>(visit.node);
         if (isReached[index]) {
             source.fail(place("nodes", index), "is reached twice: the nodes are not a tree",
-                        "check it with the glTF validator");
+                        kValidate);
         }
         isReached[index] = true;
         const tinygltf::Node& node = model.nodes[index];
@@ -156,7 +156,8 @@ Instances::Instances(const SourceFile& source, const Document& document, Buffers
         view.emplace(source, document, buffers, attributes.Get(name).GetNumberAsInt());
         if (view->components() == components) return;
         source.fail(place("nodes", index) + ".extensions." + kInstancing,
-                    std::string(name) + " is not of type VEC" + std::to_string(components), "");
+                    std::string(name) + " is not of type VEC" + std::to_string(components),
+                    kValidate);
     };
     open("TRANSLATION", 3, translation_);
     open("ROTATION", 4, rotation_);
