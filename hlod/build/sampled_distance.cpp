@@ -10,6 +10,7 @@ namespace {
 // Samples a direction. The bound of the builder's own issue replaces sampling; 4096 a node cost about as
 // much as the simplification itself.
 constexpr size_t kMaxSamples = 4096;
+constexpr size_t kScoutStride = 61;
 
 struct LocalMesh {
     std::vector<Vec3f> positions;  // 3 a triangle
@@ -34,12 +35,15 @@ double oneWay(const LocalMesh& from, const SurfaceDistance& to) {
     const size_t stride = std::max<size_t>(1, 2 * count / kMaxSamples);
     float largest = 0;
     uint32_t near = 0;
-    for (size_t i = 0; i < count; i += stride) {
+    const auto sample = [&](size_t i) {
         const Vec3f& a = from.positions[3 * i];
         const Vec3f centroid = (a + from.positions[3 * i + 1] + from.positions[3 * i + 2]) / 3.0f;
-        largest = std::max(largest, to.squaredDistance(centroid, near));
-        largest = std::max(largest, to.squaredDistance(a, near));
-    }
+        largest = std::max(largest, to.squaredDistance(centroid, near, largest));
+        largest = std::max(largest, to.squaredDistance(a, near, largest));
+    };
+    // A few spread over all find a great distance early: after them most samples end at their first guess.
+    for (size_t i = 0; i < count; i += stride * kScoutStride) sample(i);
+    for (size_t i = 0; i < count; i += stride) sample(i);
     return std::sqrt(static_cast<double>(largest));
 }
 

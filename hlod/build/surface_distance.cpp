@@ -98,7 +98,8 @@ void SurfaceDistance::split(uint32_t node, std::vector<Vec3f>& centroids, std::v
     split(left + 1, centroids, order, middle, end, positions, indices);
 }
 
-float SurfaceDistance::squaredDistance(const Vec3f& point, uint32_t& nearTriangle) const {
+float SurfaceDistance::squaredDistance(const Vec3f& point, uint32_t& nearTriangle,
+                                       float enough) const {
     const Corners& guess = triangles_[treePlace_[nearTriangle]];
     float best = toTriangle(point, guess.a, guess.ab, guess.ac);
     struct Entry {
@@ -108,7 +109,7 @@ float SurfaceDistance::squaredDistance(const Vec3f& point, uint32_t& nearTriangl
     std::array<Entry, 64> stack;  // the tree halves: 32 levels at most
     size_t depth = 0;
     stack[depth++] = {0, 0.0f};
-    while (depth > 0) {
+    while (depth > 0 && best > enough) {
         const Entry entry = stack[--depth];
         if (entry.distance >= best) continue;
         const Node& node = nodes_[entry.node];

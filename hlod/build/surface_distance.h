@@ -15,9 +15,12 @@ public:
     // `indices`: 3 a triangle, not empty. Copies what it needs.
     SurfaceDistance(std::span<const Vec3f> positions, std::span<const uint32_t> indices);
 
-    // Squared distance from `point` to the mesh. `nearTriangle` holds a guess (any triangle's number)
-    // and receives the nearest: pass the last answer for a nearby point, it saves most of the walk.
-    [[nodiscard]] float squaredDistance(const Vec3f& point, uint32_t& nearTriangle) const;
+    // Squared distance from `point` to the mesh, or any upper bound of it that is <= `enough`: who seeks the
+    // greatest distance of many points passes the greatest so far and is spared nearly every walk.
+    // `nearTriangle` holds a guess (any triangle's number) and receives the nearest seen: pass the last answer
+    // for a nearby point.
+    [[nodiscard]] float squaredDistance(const Vec3f& point, uint32_t& nearTriangle,
+                                        float enough = 0.0f) const;
 
 private:
     struct Corners {

@@ -90,18 +90,30 @@ Camera frameBox(const Camera& camera, const Box3d& box, const Vec3d& direction, 
     const Axes axes = makeAxes(-direction, framed.up);
     const double tanY = std::tan(glm::radians(camera.fovyDegrees) / 2) * kFrameFill;
     const double tanX = tanY * camera.widthPx / camera.heightPx;
-    double eyeDistance = 0.0;
-    if (!box.isEmpty()) {
+    // Sides of the frustum as lines in (x, depth) and (y, depth) that must enclose every corner:
+    // the nearest eye, moved sideways so that the box is in the middle of the picture.
+    const double tans[2] = {tanX, tanY};
+    const Vec3d sideways[2] = {axes.right, axes.up};
+    double least[2], most[2], eyeDistance = 0.0;
+    for (size_t i = 0; i < 2 && !box.isEmpty(); ++i) {
+        least[i] = std::numeric_limits<double>::max();
+        most[i] = std::numeric_limits<double>::lowest();
         for (const Vec3d& corner : corners(box)) {
-            const Vec3d offset = corner - centre;
-            const double needed = std::max(std::abs(glm::dot(axes.right, offset)) / tanX,
-                                           std::abs(glm::dot(axes.up, offset)) / tanY);
-            eyeDistance = std::max(eyeDistance, needed - glm::dot(axes.forward, offset));
+            const double across = glm::dot(sideways[i], corner - centre);
+            const double widening = glm::dot(axes.forward, corner - centre) * tans[i];
+            least[i] = std::min(least[i], across + widening);
+            most[i] = std::max(most[i], across - widening);
         }
+        eyeDistance = std::max(eyeDistance, (most[i] - least[i]) / (2 * tans[i]));
     }
-    if (!(eyeDistance > 0.0)) eyeDistance = 1.0;
     framed.target = centre;
-    framed.eye = centre + direction * eyeDistance;
+    if (eyeDistance > 0.0) {
+        framed.target +=
+            0.5 * (least[0] + most[0]) * axes.right + 0.5 * (least[1] + most[1]) * axes.up;
+    } else {
+        eyeDistance = 1.0;
+    }
+    framed.eye = framed.target + direction * eyeDistance;
     return framed;
 }
 
