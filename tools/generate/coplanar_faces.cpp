@@ -113,7 +113,7 @@ private:
         for (size_t i = 0; i < keys.size(); ++i) {
             order_[i] = keys[i].second;
             if (i == 0 || keys[i].first >> 48 != keys[i - 1].first >> 48) {
-                levels_.push_back({.begin = i});
+                levels_.emplace_back().begin = i;
             }
             levels_.back().end = i + 1;
         }

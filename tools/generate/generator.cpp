@@ -7,6 +7,8 @@ namespace pagoda::tools {
 const std::vector<Generator>& generators() {
     static const std::vector<Generator> kGenerators{
         {"torus", "a closed, noisy surface like a scan", 1'000'000, generateTorus},
+        {"powerplant", "boiler house, turbine hall and pipes, deep occlusion inside", 2'000'000,
+         generatePowerplant},
     };
     return kGenerators;
 }

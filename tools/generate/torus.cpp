@@ -103,7 +103,8 @@ SceneViews generateTorus(ooc::TriangleSink& sink, const GenerateOptions& options
         }
     }
     const Vec3d centre(0.0);
-    return {.outside = {{{14, -20, 14}, centre}, {{0, -26, 6}, centre}, {{2, -2, 30}, centre}}};
+    return {.walk = {},
+            .outside = {{{14, -20, 14}, centre}, {{0, -26, 6}, centre}, {{2, -2, 30}, centre}}};
 }
 
 }  // namespace pagoda::tools
