@@ -82,7 +82,7 @@ void main() {
     if (dot(n, towardsEye) < 0.0) n = -n;
     float lamp = max(dot(n, normalize(towardsEye + towardsLight)), 0.0);
     float sky = 0.5 + 0.5 * dot(n, worldUp);
-    float light = 0.22 + 0.26 * sky + 0.50 * lamp;
+    float light = 0.14 + 0.26 * sky + 0.54 * lamp;
     colour = vec4(albedo.rgb * light, albedo.a);
     nodeOrdinal = ids.x;
     triangle = ids.y + uint(gl_PrimitiveID);
