@@ -28,7 +28,7 @@ struct Triangle {
     [[nodiscard]] auto operator<=>(const Triangle&) const = default;
 };
 
-// A mesh as an unordered set of triangles with their attributes; corners begin with the least.
+// A mesh as an unordered set of triangles with their attributes.
 std::vector<Triangle> trianglesOf(const PageMesh& mesh) {
     std::vector<Triangle> triangles;
     size_t run = 0, left = mesh.runs.empty() ? 0 : mesh.runs[0].triangleCount;
@@ -47,9 +47,13 @@ std::vector<Triangle> trianglesOf(const PageMesh& mesh) {
                 corner.v = mesh.normals[vertex].v;
             }
         }
-        std::rotate(triangle.corners.begin(),
-                    std::min_element(triangle.corners.begin(), triangle.corners.end()),
-                    triangle.corners.end());
+        // Of the three rotations the least: two corners may be the same.
+        auto& corners = triangle.corners;
+        std::array rotated = corners;
+        for (int turn = 0; turn < 2; ++turn) {
+            std::rotate(rotated.begin(), rotated.begin() + 1, rotated.end());
+            corners = std::min(corners, rotated);
+        }
         triangles.push_back(triangle);
     }
     std::sort(triangles.begin(), triangles.end());
