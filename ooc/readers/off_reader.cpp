@@ -31,8 +31,9 @@ public:
             TextCursor cursor(line.substr(0, line.find('#')));
             if (!cursor.atEnd()) return cursor;
         }
-        text_.source().failCutShort("line " + std::to_string(text_.lineNumber()),
-                                    std::string("the file ends among the ") + wanted);
+        text_.source().failCutShort(
+            "line " + std::to_string(std::max<uint64_t>(1, text_.lineNumber())),
+            std::string("the file ends among the ") + wanted);
     }
     [[nodiscard]] const TextStream& text() const { return text_; }
 

@@ -51,18 +51,23 @@ template <typename Scalar>
 
 class PlyBinaryValues {
 public:
+    static constexpr bool kIsBinary = true;
+
     PlyBinaryValues(InputStream& stream, PlyFormat format)
         : stream_(stream), swapsBytes_(format == PlyFormat::BinaryBigEndian) {}
 
     void endItem() {}
     [[nodiscard]] double number(PlyScalar type) {
-        const size_t bytes = plyScalarBytes(type);
+        return loadPlyScalar(take(plyScalarBytes(type)), type, swapsBytes_);
+    }
+    // The next bytes, as they lie. Valid until the next call.
+    [[nodiscard]] const std::byte* take(size_t bytes) {
         const std::span<const std::byte> ahead = stream_.ahead(bytes);
         if (ahead.size() < bytes) failCutShort();
-        const double value = loadPlyScalar(ahead.data(), type, swapsBytes_);
         stream_.take(bytes);
-        return value;
+        return ahead.data();
     }
+    [[nodiscard]] bool swapsBytes() const { return swapsBytes_; }
     // Length of the list that follows, checked against what is left of the file.
     [[nodiscard]] uint64_t listLength(const PlyProperty& list) {
         const double length = number(*list.countType);
@@ -93,6 +98,8 @@ private:
 // beyond the announced properties is ignored and counted.
 class PlyAsciiValues {
 public:
+    static constexpr bool kIsBinary = false;
+
     explicit PlyAsciiValues(TextStream& stream) : stream_(stream) {}
 
     void endItem() {

@@ -81,29 +81,42 @@ struct PlyVertices::Row {
     template <typename Values>
     uint32_t read(Values& values, std::byte* out) {
         const std::vector<PlyProperty>& properties = vertices_.element_.properties;
-        std::array<uint32_t, 4> channels = {255, 255, 255, 255};
         for (size_t k = 0; k < properties.size(); ++k) {
             if (properties[k].isList()) {
                 values.skipList(properties[k]);
-                continue;
-            }
-            const double value = values.number(properties[k].type);
-            const uint8_t target = targets_[k];
-            if (target >= kColour && target < kNormal) {
-                channels[target - kColour] = plyColourChannel(value, properties[k].type);
             } else {
-                fields_[target] = value;
+                set(k, values.number(properties[k].type));
             }
         }
         values.endItem();
-        const uint32_t colour =
-            channels[0] | channels[1] << 8 | channels[2] << 16 | channels[3] << 24;
-        pack(colour, out);
-        return colour;
+        return pack(out);
+    }
+    // The same from binary data without lists, all of which is at `from`.
+    uint32_t readRow(const std::byte* from, bool swapsBytes, std::byte* out) {
+        const std::vector<PlyProperty>& properties = vertices_.element_.properties;
+        for (size_t k = 0; k < properties.size(); ++k) {
+            const PlyScalar type = properties[k].type;
+            if (targets_[k] != kNothing) set(k, loadPlyScalar(from, type, swapsBytes));
+            from += plyScalarBytes(type);
+        }
+        return pack(out);
     }
 
 private:
-    void pack(uint32_t colour, std::byte* out) const {
+    void set(size_t property, double value) {
+        const uint8_t target = targets_[property];
+        const PlyScalar type = vertices_.element_.properties[property].type;
+        if (target < kColour || target >= kNormal) {
+            fields_[target] = value;
+        } else {
+            channels_[target - kColour] = type == PlyScalar::UInt8 ? static_cast<uint32_t>(value)
+                                                                   : plyColourChannel(value, type);
+        }
+    }
+
+    uint32_t pack(std::byte* out) const {
+        const uint32_t colour =
+            channels_[0] | channels_[1] << 8 | channels_[2] << 16 | channels_[3] << 24;
         const Vec3d position(fields_[kPosition], fields_[kPosition + 1], fields_[kPosition + 2]);
         if (vertices_.isDouble_) {
             std::memcpy(out, &position, sizeof position);
@@ -119,22 +132,36 @@ private:
                 unitNormal(fields_[kNormal], fields_[kNormal + 1], fields_[kNormal + 2]);
             std::memcpy(out + vertices_.normalOffset_, &normal, sizeof normal);
         }
+        return colour;
     }
 
     const PlyVertices& vertices_;
-    std::vector<uint8_t> targets_;     // by property
+    std::vector<uint8_t> targets_;  // by property
+    std::array<uint32_t, 4> channels_ = {255, 255, 255, 255};
     std::array<double, 11> fields_{};  // by target; the last takes what nobody wants
 };
+
+// `rowBytes` > 0: no lists, so a binary vertex can be taken at once.
+template <typename Values>
+uint32_t PlyVertices::readVertex(Row& row, Values& values, std::byte* out, size_t rowBytes) {
+    if constexpr (Values::kIsBinary) {
+        if (rowBytes > 0) {
+            return row.readRow(values.take(rowBytes), values.swapsBytes(), out);
+        }
+    }
+    return row.read(values, out);
+}
 
 template <typename Values>
 void PlyVertices::load(Values& values) {
     Row row(*this);
     std::vector<std::byte> block(kPackedBlockBytes / strideBytes_ * strideBytes_);
     size_t filled = 0;
+    const auto rowBytes = element_.hasLists() ? 0 : static_cast<size_t>(element_.leastBytes());
     for (uint64_t k = 0; k < element_.count; ++k) {
-        const uint32_t alpha = row.read(values, block.data() + filled) >> 24;
+        std::byte* const out = block.data() + filled;
+        const uint32_t alpha = readVertex(row, values, out, rowBytes) >> 24;
         highestAlpha_ = std::max(highestAlpha_, alpha);
-        lowestAlpha_ = std::min(lowestAlpha_, alpha);
         filled += strideBytes_;
         if (filled == block.size()) {
             scratch_.append(block);
@@ -174,21 +201,7 @@ void PlyVertices::loadPlain(InputStream& stream) {
 void PlyVertices::finish() {
     scratch_.seal();
     data_ = scratch_.bytes().data();
-    const bool meansNothing = highestAlpha_ == 0;
-    hasAlpha_ = hasColours() && !meansNothing && lowestAlpha_ < 255;
-    alphaMask_ = meansNothing ? 0xFF000000u : 0;
-}
-
-Corner PlyVertices::corner(uint64_t index) const {
-    Corner corner;
-    corner.position = position(index);
-    const std::byte* from = data_ + index * strideBytes_;
-    if (hasColours()) {
-        std::memcpy(&corner.colour, from + colourOffset_, sizeof corner.colour);
-        corner.colour |= alphaMask_;
-    }
-    if (hasNormals()) std::memcpy(&corner.normal, from + normalOffset_, sizeof corner.normal);
-    return corner;
+    if (highestAlpha_ == 0) alphaMask_ = 0xFF000000u;
 }
 
 }  // namespace pagoda::ooc

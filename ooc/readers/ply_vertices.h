@@ -40,9 +40,6 @@ public:
     [[nodiscard]] uint64_t count() const noexcept { return element_.count; }
     [[nodiscard]] bool hasColours() const noexcept { return colourOffset_ != kNone; }
     [[nodiscard]] bool hasNormals() const noexcept { return normalOffset_ != kNone; }
-    // Some colour is neither opaque nor is the alpha channel a plain zero throughout (which
-    // exporters write that do not know it).
-    [[nodiscard]] bool hasAlpha() const noexcept { return hasAlpha_; }
 
     // `index` < count(), after load.
     [[nodiscard]] Vec3d position(uint64_t index) const {
@@ -56,11 +53,23 @@ public:
         std::memcpy(&position, from, sizeof position);
         return Vec3d(position);
     }
-    [[nodiscard]] Corner corner(uint64_t index) const;
+    [[nodiscard]] Corner corner(uint64_t index) const {
+        Corner corner;
+        corner.position = position(index);
+        const std::byte* from = data_ + index * strideBytes_;
+        if (hasColours()) {
+            std::memcpy(&corner.colour, from + colourOffset_, sizeof corner.colour);
+            corner.colour |= alphaMask_;
+        }
+        if (hasNormals()) std::memcpy(&corner.normal, from + normalOffset_, sizeof corner.normal);
+        return corner;
+    }
 
 private:
     static constexpr size_t kNone = SIZE_MAX;
     struct Row;
+    template <typename Values>
+    static uint32_t readVertex(Row& row, Values& values, std::byte* out, size_t rowBytes);
     void finish();
 
     const SourceFile& source_;
@@ -69,9 +78,11 @@ private:
     std::array<size_t, 3> positionProperties_{};
     std::array<std::optional<size_t>, 3> normalProperties_;
     PlyColourProperties colourProperties_;
-    bool isDouble_ = false, hasAlpha_ = false;
-    uint32_t highestAlpha_ = 0, lowestAlpha_ = 255;
-    uint32_t alphaMask_ = 0;  // ORed into colours: all ones where the alpha channel means nothing
+    bool isDouble_ = false;
+    uint32_t highestAlpha_ = 0;
+    // ORed into colours. All alphas are zero in files of exporters that do not know what it is, and
+    // nothing would be seen: opaque is meant.
+    uint32_t alphaMask_ = 0;
     size_t strideBytes_ = 0, colourOffset_ = kNone, normalOffset_ = kNone;
     const std::byte* data_ = nullptr;
 };

@@ -34,8 +34,9 @@ private:
     void clipEars();
     [[nodiscard]] bool isEar(uint32_t corner, bool takesStraight) const;
 
-    std::vector<Point> points_;  // counter-clockwise
-    std::vector<uint32_t> previous_, next_;
+    std::vector<Point> points_;              // counter-clockwise
+    std::vector<uint32_t> previous_, next_;  // a ring; next_ of a cut corner is itself
+    std::vector<uint32_t> queue_;
     std::vector<Triangle> triangles_;
 };
 

@@ -22,19 +22,16 @@ void TriangleBatcher::setTarget(uint32_t object, uint32_t material) {
     batch_.material = material;
 }
 
-void TriangleBatcher::addAttributes(const Corner& a, const Corner& b, const Corner& c) {
+void TriangleBatcher::addNormals(const Corner& a, const Corner& b, const Corner& c) {
     const std::array corners = {&a, &b, &c};
     for (size_t k = 0; k < 3; ++k) {
-        const size_t slot = 3 * count_ + k;
-        if (hasColours_) batch_.colours[slot] = corners[k]->colour;
-        if (!hasNormals_) continue;
         Vec3f normal = corners[k]->normal;
         if (normal == Vec3f(0)) {
             const Vec3d face = glm::cross(b.position - a.position, c.position - a.position);
             normal = unitNormal(face.x, face.y, face.z);
             if (normal == Vec3f(0)) normal = Vec3f(0, 0, 1);
         }
-        batch_.normals[slot] = normal;
+        batch_.normals[3 * count_ + k] = normal;
     }
 }
 

@@ -29,7 +29,13 @@ public:
     // Drops and counts the triangle if a coordinate is not finite.
     void add(const Corner& a, const Corner& b, const Corner& c) {
         if (!addPositions(a.position, b.position, c.position)) return;
-        if (hasColours_ || hasNormals_) addAttributes(a, b, c);
+        if (hasColours_) {
+            uint32_t* out = batch_.colours.data() + 3 * count_;
+            out[0] = a.colour;
+            out[1] = b.colour;
+            out[2] = c.colour;
+        }
+        if (hasNormals_) addNormals(a, b, c);
         commit();
     }
     // The same for input without colours and normals (as the constructor was told).
@@ -59,7 +65,7 @@ private:
         out[2] = c;
         return true;
     }
-    void addAttributes(const Corner& a, const Corner& b, const Corner& c);
+    void addNormals(const Corner& a, const Corner& b, const Corner& c);
     void commit() {
         if (++count_ == kBatchTriangles) flush();
     }
