@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# From a fresh clone to pictures: generates a power plant, builds its database and renders it.
+#
+#   tools/demo.sh [TRIANGLES]                 default 2000000
+#
+# Everything it makes lies in out/: the model, the database, the pictures.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+triangles=${1:-2000000}
+started=$SECONDS
+say() { printf '\n[%d s] %s\n' $((SECONDS - started)) "$1"; }
+
+say "Packages"
+tools/install-packages.sh build
+say "Building Pagoda"
+cmake --preset release -DPAGODA_TESTS=OFF >/dev/null
+cmake --build build-release --target pagoda
+pagoda=build-release/tools/pagoda
+
+mkdir -p out
+say "A power plant of $triangles triangles"
+"$pagoda" generate powerplant --triangles "$triangles" -o out/plant.glb --force
+say "Its database"
+"$pagoda" build out/plant.glb -o out/plant.pagoda --up z --force
+"$pagoda" info out/plant.pagoda
+"$pagoda" verify out/plant.pagoda
+
+# Metres, z up. The same four places at every size of the model.
+picture() {
+    "$pagoda" render out/plant.pagoda -o "out/$1.png" --size 1280x720 --tau 1 --camera "$2"
+}
+say "Pictures"
+picture plant-outside '{"eye":[190,-70,30],"target":[85,30,18],"fovy":50}'
+picture plant-above '{"eye":[-60,120,120],"target":[80,30,0],"fovy":50}'
+picture turbine-hall '{"eye":[3,3,10.2],"target":[50,20,9],"fovy":60}'
+picture boiler-room '{"eye":[88.57,6.3,1.7],"target":[124.1,6.3,1.3],"fovy":65}'
+
+say "Done. Look at:"
+for name in plant-outside plant-above turbine-hall boiler-room; do
+    echo "  $PWD/out/$name.png"
+done
