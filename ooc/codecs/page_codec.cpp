@@ -1,6 +1,7 @@
 #include "ooc/codecs/page_codec.h"
 
 #include "ooc/base/bytes.h"
+#include "ooc/codecs/draco_geometry.h"
 #include "ooc/codecs/geometry.h"
 
 #include <algorithm>
@@ -108,7 +109,11 @@ Section encodeMesh(const PageMesh& mesh, Codec codec) {
     out.put(static_cast<uint32_t>(mesh.runs.size()));
     out.putArray(std::span<const uint32_t>(mesh.partStart));
     putRuns(mesh.runs, codec, out);
-    encodeGeometry(viewOf(mesh), codec, out);
+    if (codec != Codec::Draco) {
+        encodeGeometry(viewOf(mesh), codec, out);
+    } else if (!encodeDraco(viewOf(mesh), mesh.runs, out)) {
+        return encodeMesh(mesh, Codec::Meshopt);
+    }
     return {kMeshTag, codec, out.take()};
 }
 
@@ -127,7 +132,9 @@ std::string decodeMesh(std::span<const std::byte> bytes, Codec codec, PageMesh& 
     if (!in.isOk()) return "cut short";
     if (std::string fault = getRuns(in, codec, runCount, mesh.runs); !fault.empty()) return fault;
     Geometry geometry;
-    if (std::string fault = decodeGeometry(in, codec, geometry); !fault.empty()) return fault;
+    std::string fault = codec == Codec::Draco ? decodeDraco(in, mesh.runs, geometry)
+                                              : decodeGeometry(in, codec, geometry);
+    if (!fault.empty()) return fault;
     if (in.remaining() != 0) return std::to_string(in.remaining()) + " bytes too many";
     mesh.positions = std::move(geometry.positions);
     mesh.colours = std::move(geometry.colours);
@@ -213,9 +220,9 @@ std::optional<Codec> codecByName(std::string_view name) {
 }
 
 std::vector<std::byte> encodePage(const Page& page, Codec codec) {
-    const Codec simple = codec == Codec::Raw ? Codec::Raw : Codec::Meshopt;
+    const Codec simple = codec == Codec::Draco ? Codec::Meshopt : codec;  // zippers are small
     std::vector<Section> sections;
-    sections.push_back(encodeMesh(page.mesh, simple));
+    sections.push_back(encodeMesh(page.mesh, codec));
     for (const Zipper& zipper : page.zippers) sections.push_back(encodeZipper(zipper, simple));
     assert(sections.size() <= kMaxSections);
 
