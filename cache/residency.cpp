@@ -49,28 +49,42 @@ PageState Residency::want(const PageRequest& request) {
     ooc::Page loaded;
     const ooc::Page* page = decoded(request, loaded);
     if (page == nullptr) return PageState::Failed;
-    return upload(request.id, *page);
+    const PageState state = upload(request.id, *page);
+    if (state == PageState::NoRoom && page == &loaded)
+        turnedAway_.emplace(request.id, std::move(loaded));
+    return state;
 }
 
+// The page from host memory or the source; `loaded` holds it when host memory keeps no copy.
 const ooc::Page* Residency::decoded(const PageRequest& request, ooc::Page& loaded) {
     if (const auto found = decoded_.find(request.id); found != decoded_.end()) {
         hostLru_.touch(request.id, frameIndex_);
         return &found->second;
     }
-    counters_.bytesRead += request.node.pageBytes;
-    ooc::Loaded<ooc::Page> result = source_.loadPage(request.node);
-    if (!result.value) {
-        fail(request.id, std::move(result.fault));
-        return nullptr;
-    }
-    ++counters_.loadedPages;
-    loaded = std::move(*result.value);
+    if (!load(request, loaded)) return nullptr;
     const uint64_t sizeBytes = decodedBytes(loaded);
     std::vector<PageId> evicted;
     if (!hostLru_.makeRoom(sizeBytes, evicted)) return &loaded;
     for (const PageId& page : evicted) decoded_.erase(page);
     hostLru_.insert(request.id, sizeBytes, frameIndex_);
     return &decoded_.emplace(request.id, std::move(loaded)).first->second;
+}
+
+bool Residency::load(const PageRequest& request, ooc::Page& loaded) {
+    if (turnedAway_ && turnedAway_->first == request.id) {
+        loaded = std::move(turnedAway_->second);
+        turnedAway_.reset();
+        return true;
+    }
+    counters_.bytesRead += request.node.pageBytes;
+    ooc::Loaded<ooc::Page> result = source_.loadPage(request.node);
+    if (!result.value) {
+        fail(request.id, std::move(result.fault));
+        return false;
+    }
+    ++counters_.loadedPages;
+    loaded = std::move(*result.value);
+    return true;
 }
 
 PageState Residency::upload(PageId id, const ooc::Page& page) {

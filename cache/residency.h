@@ -12,9 +12,11 @@
 #include "cache/page_source.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 namespace pagoda::cache {
@@ -70,6 +72,7 @@ public:
 
 private:
     [[nodiscard]] const ooc::Page* decoded(const PageRequest& request, ooc::Page& loaded);
+    [[nodiscard]] bool load(const PageRequest& request, ooc::Page& loaded);
     [[nodiscard]] PageState upload(PageId id, const ooc::Page& page);
     PageState fail(PageId id, std::string what);
     void dropEvicted(std::vector<PageId>& evicted);
@@ -78,6 +81,8 @@ private:
     GpuPages& gpu_;
     LruPages hostLru_, gpuLru_;
     std::unordered_map<PageId, ooc::Page, PageIdHash> decoded_;
+    // A page that found no room while hostLru_ is too small for it: read once, not at each try.
+    std::optional<std::pair<PageId, ooc::Page>> turnedAway_;
     std::unordered_set<PageId, PageIdHash> failed_;
     std::vector<PageFault> faults_;
     Counters counters_;

@@ -48,6 +48,42 @@ public:
         return scene;
     }
 
+    // A root and its children as leaves, by octant: what each holds is the test's own choice.
+    static MemoryScene withLeaves(const ooc::Lattice& lattice,
+                                  const std::map<uint32_t, std::vector<Triangle>>& leaves) {
+        MemoryScene scene;
+        scene.lattice = lattice;
+        scene.block.nodes.resize(1 + leaves.size());
+        std::vector<Triangle> all;
+        size_t next = 1;
+        for (const auto& [octant, triangles] : leaves) {
+            scene.setNode(next++, ooc::NodeId::root().child(octant), triangles, 0.0);
+            scene.block.nodes[0].childMask |= static_cast<uint16_t>(1u << octant);
+            all.insert(all.end(), triangles.begin(), triangles.end());
+        }
+        scene.block.nodes[0].childIndex = 1;
+        scene.setNode(0, ooc::NodeId::root(), all, lattice.step());
+        return scene;
+    }
+
+    // Fills in a node's page and all of its record but the links to its children.
+    void setNode(size_t index, ooc::NodeId id, const std::vector<Triangle>& triangles,
+                 double errorModelUnits) {
+        const ooc::Page page = makePage(triangles);
+        ooc::NodeRecord& record = block.nodes[index];
+        record.id = id;
+        record.box = page.mesh.box();
+        record.errorModelUnits = errorModelUnits;
+        record.flags = ooc::kNodeHasColours;
+        record.triangleCount = page.mesh.triangleCount();
+        record.opaqueTriangleCount = page.mesh.opaqueTriangleCount();
+        record.vertexCount = page.mesh.vertexCount();
+        if (record.opaqueTriangleCount < record.triangleCount)
+            record.flags |= ooc::kNodeHasTranslucent;
+        record.pageBytes = 1;
+        pages[id] = page;
+    }
+
     static ooc::Page makePage(const std::vector<Triangle>& triangles) {
         ooc::Page page;
         ooc::PageMesh& mesh = page.mesh;
@@ -84,21 +120,10 @@ private:
             for (const Vec3i& corner : t.corners) box.extend(corner);
         }
         const bool isLeaf = triangles.size() <= leafTriangles || bits == 0;
-        const ooc::Page page = makePage(isLeaf ? triangles : clustered(triangles, bits));
-        for (const Vec3i& p : page.mesh.positions) box.extend(p);
         if (!isLeaf) addChildren(index, id, cell, bits, triangles, leafTriangles, box);
-        ooc::NodeRecord& record = block.nodes[index];
-        record.id = id;
-        record.box = box;
-        record.errorModelUnits = isLeaf ? 0.0 : std::ldexp(lattice.step(), bits - kClusterBits + 1);
-        record.flags = ooc::kNodeHasColours;
-        record.triangleCount = page.mesh.triangleCount();
-        record.opaqueTriangleCount = page.mesh.opaqueTriangleCount();
-        record.vertexCount = page.mesh.vertexCount();
-        if (record.opaqueTriangleCount < record.triangleCount)
-            record.flags |= ooc::kNodeHasTranslucent;
-        record.pageBytes = 1;
-        pages[id] = page;
+        const double error = isLeaf ? 0.0 : std::ldexp(lattice.step(), bits - kClusterBits + 1);
+        setNode(index, id, isLeaf ? triangles : clustered(triangles, bits), error);
+        block.nodes[index].box.extend(box);
     }
 
     void addChildren(size_t index, ooc::NodeId id, const Vec3i& cell, int bits,
