@@ -1,18 +1,12 @@
 #include "ooc/readers/reader.h"
 
 #include "ooc/base/error.h"
+#include "ooc/readers/drc_reader.h"
+#include "ooc/readers/gltf_reader.h"
 #include "ooc/readers/obj_reader.h"
 #include "ooc/readers/off_reader.h"
 #include "ooc/readers/ply_reader.h"
 #include "ooc/readers/stl_reader.h"
-#if __has_include("ooc/readers/gltf_reader.cpp")
-#include "ooc/readers/gltf_reader.h"
-#define PAGODA_HAS_GLTF_READER 1
-#endif
-#if __has_include("ooc/readers/drc_reader.cpp")
-#include "ooc/readers/drc_reader.h"
-#define PAGODA_HAS_DRC_READER 1
-#endif
 
 #include <algorithm>
 #include <array>
@@ -119,12 +113,8 @@ const std::vector<ReaderFormat>& readerFormats() {
         {"OBJ", {".obj"}, openObjReader},
         {"STL", {".stl"}, openStlReader},
         {"OFF", {".off"}, openOffReader},
-#ifdef PAGODA_HAS_GLTF_READER
         {"glTF", {".gltf", ".glb"}, openGltfReader},
-#endif
-#ifdef PAGODA_HAS_DRC_READER
         {"Draco", {".drc"}, openDrcReader},
-#endif
     };
     return formats;
 }
