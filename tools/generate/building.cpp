@@ -77,7 +77,7 @@ void addRailing(SceneKit& kit, const Frame& at, std::span<const Vec3d> path, dou
         const int posts = std::max(1, static_cast<int>(std::lround(glm::length(step) / 1.3)));
         for (int k = i == 0 ? 0 : 1; k <= posts; ++k) {
             const Vec3d foot = path[i] + step * (static_cast<double>(k) / posts);
-            kit.rod(at, foot + Vec3d(0, 0, -0.015), foot + Vec3d(0, 0, height), 0.022);
+            kit.rod(at, foot + Vec3d(0, 0, -0.0137), foot + Vec3d(0, 0, height), 0.022);
         }
     }
     for (const double level : {height, height * 0.52}) {

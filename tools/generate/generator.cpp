@@ -9,6 +9,9 @@ const std::vector<Generator>& generators() {
         {"torus", "a closed, noisy surface like a scan", 1'000'000, generateTorus},
         {"powerplant", "boiler house, turbine hall and pipes, deep occlusion inside", 2'000'000,
          generatePowerplant},
+        {"city", "streets and blocks, facades down to window sills", 2'000'000, generateCity},
+        {"interior", "an office building: rooms, corridors, furniture", 1'000'000,
+         generateInterior},
     };
     return kGenerators;
 }

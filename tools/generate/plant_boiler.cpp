@@ -51,12 +51,11 @@ void addBurners(Site& site, const Frame& at, double width, double z0) {
             kit.rod(at, {x, -1.25, z}, {x, -0.1, z}, 0.55);
             kit.rod(at, {x, -1.42, z}, {x, -1.26, z}, 0.68);
             kit.paint(site.colours.dark);
-            const double drop = 1.2 + 0.55 * row;
-            const std::array<Vec3d, 4> coal{Vec3d(x + 0.1, -1.3, z),
-                                            Vec3d(x + 0.1, -drop - 0.75, z),
-                                            Vec3d(x + 0.1 + 0.4 * row, -drop - 0.75, z - 2.6),
-                                            Vec3d(x + 0.1 + 0.4 * row, -drop - 0.75, -0.012)};
-            kit.tube(at, coal, 0.22, 0.6);
+            const double aside = 0.95 + 0.55 * row, foot = -0.012 - 0.001 * row;
+            const std::array<Vec3d, 3> coal{Vec3d(x, -1.35, z + 0.03),
+                                            Vec3d(x + aside, -1.35, z + 0.03),
+                                            Vec3d(x + aside, -1.35, foot)};
+            kit.tube(at, coal, 0.2, 0.4);
         }
     }
 }
@@ -110,7 +109,7 @@ void addMachine(Site& site, const Frame& at, int number) {
         addCasing(site, line, places[i], lengths[i], radii[i], paints[i],
                   fmt::format("{} {}", names[i], number));
         kit.paint(site.colours.structure);
-        for (const double end : {0.35, lengths[i] - 0.85}) {
+        for (const double end : {0.41, lengths[i] - 0.93}) {
             kit.box(at, {places[i] + end, -radii[i] * 0.8, 0.84},
                     {places[i] + end + 0.5, radii[i] * 0.8, height - radii[i] * 0.35});
         }
@@ -156,7 +155,7 @@ void addControlRoom(Site& site, const Frame& at) {
         addWindow(kit, front.moved({hole.u0, 0, hole.v0}),
                   {.width = hole.u1 - hole.u0,
                    .height = hole.v1 - hole.v0,
-                   .wallThickness = 0.16,
+                   .wallThickness = 0.24,
                    .columns = 2,
                    .rows = 1,
                    .frameMaterial = site.colours.steel,
@@ -165,7 +164,8 @@ void addControlRoom(Site& site, const Frame& at) {
     }
     kit.paint(site.colours.wall);
     for (const double y : {0.0, w}) {
-        addWall(kit, at.moved({0.004, y == 0 ? 0.083 : w - 0.083, 0}), d - 0.07, h - 0.03, 0.16);
+        addWall(kit, at.moved({0.004, y == 0 ? 0.083 : w - 0.083, 0.005}), d - 0.07, h - 0.03,
+                0.16);
     }
     kit.paint(site.colours.cladding);
     kit.box(at, {0.002, -0.1, h - 0.007}, {d + 0.3, w + 0.1, h + 0.2});

@@ -16,7 +16,7 @@ void addVessel(Zone& zone, const std::string& tag) {
     Random& random = zone.random;
     kit.beginObject("Vessel " + tag);
     const double r = random.range(0.9, zone.size * 0.36);
-    const double top = random.range(0.62, 0.78) * zone.height, skirt = random.range(0.5, 0.8);
+    const double top = random.range(0.72, 0.93) * kPlantClear, skirt = random.range(0.5, 0.8);
     const Frame at = zone.at.moved({zone.size * 0.52, zone.size * 0.52, 0});
     kit.paint(random.chance(0.5) ? zone.colours.insulation : zone.colours.white);
     std::vector<ProfilePoint> profile;
@@ -144,7 +144,7 @@ void addPumpSet(SceneKit& kit, const PlantPalette& colours, const Frame& at, dou
     kit.lathe(pump, volute);
     kit.box(at, {0.34 * s, 0.2 * s, 0.25}, {0.5 * s, 0.7 * s, z - 0.2 * s});
     kit.paint(colours.media[1]);
-    const double d = 0.11 * s, up = 1.2 * s + random.range(0.0, 0.5);
+    const double d = 0.11 * s, up = 1.15 * s + random.range(0.0, 0.5);
     const std::array<Vec3d, 3> suction{Vec3d(0.31 * s, 0.45 * s, z), Vec3d(-0.12 * s, 0.45 * s, z),
                                        Vec3d(-0.12 * s, 0.45 * s, -0.013)};
     kit.tube(at, suction, d, 0.2 * s);

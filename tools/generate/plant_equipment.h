@@ -29,6 +29,9 @@ struct Zone {
     Random random;
 };
 
+// Equipment stays below this height, pipes above, so that nothing runs through a vessel.
+inline constexpr double kPlantClear = 4.45;
+
 using Equipment = void (*)(Zone& zone, const std::string& tag);
 // Picks one; `tag` goes into the object's name ("Room 3.07").
 void addEquipment(Zone& zone, const std::string& tag);
@@ -46,10 +49,12 @@ struct RoomSpace {
     Frame at;
     double sizeX, sizeY, height;
     Random random;
+    unsigned wallMask = 15;  // bits 0..3: there is a wall at south, east, north, west
 };
 void addPipeRack(RoomSpace& room, const std::string& tag);
 void addCableTrays(RoomSpace& room, const std::string& tag);
 void addDucts(RoomSpace& room, const std::string& tag);
+void addFittings(RoomSpace& room, const std::string& tag);  // beside the doors, on the floor
 void addLamps(RoomSpace& room, const std::string& tag);
 
 }  // namespace pagoda::tools

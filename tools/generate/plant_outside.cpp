@@ -107,10 +107,10 @@ void addTankFarm(Site& site, const Vec3d& corner) {
         kit.lathe(at, profile);
         kit.beginObject(fmt::format("Tank stairs {}", i + 1));
         kit.paint(site.colours.yellow);
-        const int steps = static_cast<int>(h / 0.22);
+        const int steps = static_cast<int>(h / 0.2237);
         std::vector<Vec3d> rail;
         for (int k = 0; k < steps; ++k) {  // winding up the shell
-            const double a = 0.3 + k * 0.28 / r, z = 0.2 + k * 0.22;
+            const double a = 0.3 + k * 0.28 / r, z = 0.2071 + k * 0.2237;
             const Frame step = at.turned(a).moved({r, 0, z});
             kit.box(step, {-0.05, -0.14, 0}, {0.85, 0.14, 0.035});
             if (k % 5 == 0) {
@@ -264,12 +264,58 @@ void addGround(Site& site) {
 
 }  // namespace
 
+void addRoofPlant(Site site, double length, double width) {
+    SceneKit& kit = site.kit;
+    kit.beginObject("Roof railing");
+    kit.paint(site.colours.yellow);
+    const std::array<Vec3d, 5> edge{Vec3d(0.2, 0.2, 0), Vec3d(length - 0.2, 0.2, 0),
+                                    Vec3d(length - 0.2, width - 0.2, 0), Vec3d(0.2, width - 0.2, 0),
+                                    Vec3d(0.2, 0.5, 0)};
+    addRailing(kit, site.at, edge);
+    const int nx = static_cast<int>(length / 9), ny = static_cast<int>(width / 9);
+    for (int j = 0; j < ny; ++j) {
+        for (int i = 0; i < nx; ++i) {
+            Random random = site.random.fork(static_cast<uint64_t>(j * 64 + i));
+            if (!random.chance(0.7)) continue;
+            const Frame at = site.at.moved({length * (i + 0.5) / nx + random.range(-1.5, 1.5),
+                                            width * (j + 0.5) / ny + random.range(-1.5, 1.5), 0});
+            kit.beginObject(fmt::format("Roof unit {}.{}", j + 1, i + 1));
+            if (random.chance(0.5)) {  // a fan in its box, with a duct
+                const double h = random.range(1.2, 2.2);
+                kit.paint(site.colours.duct);
+                kit.box(at, {-1.6, -1.1, -0.02}, {1.6, 1.1, h});
+                const std::array<Vec3d, 3> elbow{Vec3d(1.5, 0, 0.95), Vec3d(2.7, 0, 0.95),
+                                                 Vec3d(2.7, 0, -0.03)};
+                kit.tube(at, elbow, 0.26, 0.4);
+                kit.paint(site.colours.dark);
+                kit.ring(at.moved({0, 0, h + 0.02}), 0.8, 0.07);
+                for (int blade = 0; blade < 5; ++blade) {
+                    kit.box(at.turned(2 * kPi * blade / 5), {0.1, -0.15, h + 0.03 + 0.004 * blade},
+                            {0.76, 0.15, h + 0.05 + 0.004 * blade});
+                }
+            } else {  // a vent pipe with its hat
+                const double r = random.range(0.3, 0.7), h = random.range(1.5, 4.0);
+                kit.paint(site.colours.galvanised);
+                const std::array<ProfilePoint, 8> vent{{{r * 1.4, -0.02},
+                                                        {r * 1.4, 0.25},
+                                                        {r, 0.45},
+                                                        {r, h},
+                                                        {r * 0.6, h},
+                                                        {r * 0.6, h + 0.3},
+                                                        {r * 1.5, h + 0.32},
+                                                        {0, h + 0.32 + r * 0.6}}};
+                kit.lathe(at, vent);
+            }
+        }
+    }
+}
+
 void addSurroundings(Site site) {
     addGround(site);
     addChimney(site, {168, 25, kYard});
     addFlueGas(site, 138, 153, 26);
     addCoolingTower(site, {8, 84, -0.15}, 1);
-    addCoolingTower(site, {78, 96, -0.15}, 2);
+    addCoolingTower(site, {92, 99, -0.15}, 2);
     addTankFarm(site, {-52, -24, 0});
     addPipeBridge(site, 128, -40, -14);
     for (int i = 0; i < 3; ++i) addTransformer(site, {6.0 + 14 * i, -9, 0}, i + 1);

@@ -21,7 +21,9 @@ struct Pipe {
 std::vector<Vec3d> pipePath(const RoomSpace& room, const Pipe& pipe, Random& random) {
     const double end = room.sizeX + 0.07, start = -0.07;
     const double turn = random.range(0.12, 0.4) * room.sizeX;
-    switch (random.integer(0, 4)) {
+    // Only beside the aisle is the floor free of equipment.
+    const bool canDrop = std::abs(pipe.y - room.sizeY / 2) < 1.75;
+    switch (canDrop ? random.integer(1, 2) : 3 * random.integer(0, 2)) {
         case 0:
             return {{start, pipe.y, pipe.z}, {end, pipe.y, pipe.z}};
         case 1:
@@ -30,11 +32,14 @@ std::vector<Vec3d> pipePath(const RoomSpace& room, const Pipe& pipe, Random& ran
             return {{end, pipe.y, pipe.z},
                     {room.sizeX - turn, pipe.y, pipe.z},
                     {room.sizeX - turn, pipe.y, -0.014}};
-        case 3:
+        case 3: {
+            const bool isRising = random.chance(0.5);
+            if (!isRising) return {{start, pipe.y, pipe.upperZ}, {end, pipe.y, pipe.upperZ}};
             return {{start, pipe.y, pipe.z},
                     {turn, pipe.y, pipe.z},
                     {turn, pipe.y, pipe.upperZ},
                     {end, pipe.y, pipe.upperZ}};
+        }
         default: {
             const double back = room.sizeX * random.range(0.65, 0.85);
             return {{start, pipe.y, pipe.z},     {turn, pipe.y, pipe.z},
@@ -48,7 +53,7 @@ void addPipe(RoomSpace& room, const Pipe& pipe, Random random) {
     SceneKit& kit = room.kit;
     kit.paint(room.colours.media[pipe.medium]);
     const std::vector<Vec3d> path = pipePath(room, pipe, random);
-    kit.tube(room.at, path, pipe.radius, pipe.radius * 2.5 + 0.06, false);
+    kit.tube(room.at, path, pipe.radius, pipe.radius * 2.5 + 0.06);
     for (size_t i = 0; i + 1 < path.size(); ++i) {
         const Vec3d step = path[i + 1] - path[i];
         const double length = glm::length(step);
@@ -83,7 +88,7 @@ void addFlange(SceneKit& kit, const Frame& at, double pipeRadius, Random& random
     const double r = pipeRadius * 1.45 + 0.025, half = 0.014 + pipeRadius * 0.12;
     kit.rod(at, {0, 0, -half - 0.002}, {0, 0, -0.002}, r);
     kit.rod(at, {0, 0, 0.002}, {0, 0, half + 0.002}, r * 0.995);
-    if (!kit.keeps(random)) return;
+    if (!kit.keeps(random) || pipeRadius < 0.07) return;
     const int bolts = pipeRadius > 0.1 ? 8 : 4;
     const double circle = (pipeRadius + r) / 2, size = 0.006 + 0.05 * pipeRadius;
     for (int i = 0; i < bolts; ++i) {
@@ -123,7 +128,7 @@ void addValve(SceneKit& kit, const PlantPalette& colours, const Frame& at, doubl
 
 void addPipeRack(RoomSpace& room, const std::string& tag) {
     Random& random = room.random;
-    const double lower = 3.05, upper = room.height - 1.6;
+    const double lower = kPlantClear + 0.1, upper = room.height - 1.1;
     for (int side = 0; side < 2; ++side) {
         const int medium = random.integer(0, 5), other = (medium + random.integer(1, 5)) % 6;
         room.kit.beginObject(std::string("Pipes ") + std::string(kMediumNames[medium]) + " " + tag);
@@ -134,8 +139,7 @@ void addPipeRack(RoomSpace& room, const std::string& tag) {
             const double radius = random.range(0.04, random.chance(0.3) ? 0.24 : 0.13);
             y += radius * 1.5 + 0.06;
             const Pipe pipe{y, radius, lower + radius + random.range(0.0, 0.02),
-                            upper - 0.3 + random.range(0.0, 0.25),
-                            random.chance(0.65) ? medium : other};
+                            upper + random.range(-0.1, 0.15), random.chance(0.65) ? medium : other};
             y += radius * 1.5 + 0.06 + random.range(0.0, 0.15);
             const Random own = random.fork(7);
             (void)random.next();
@@ -149,10 +153,10 @@ void addCableTrays(RoomSpace& room, const std::string& tag) {
     SceneKit& kit = room.kit;
     Random& random = room.random;
     kit.beginObject("Cable trays " + tag);
-    const double z0 = room.height - 0.95;
+    const double z0 = room.height - 0.62;
     for (int tray = 0; tray < 2; ++tray) {
         const double y = (tray == 0 ? 0.16 : room.sizeY - 0.74) + random.range(0.0, 0.05);
-        const double z = z0 + random.range(0.0, 0.3), w = 0.55;
+        const double z = z0 + random.range(0.0, 0.2), w = 0.55;
         kit.paint(room.colours.galvanised);
         for (const double side : {y, y + w}) {
             kit.box(room.at, {-0.06, side - 0.004, z}, {room.sizeX + 0.06, side + 0.004, z + 0.09});
@@ -170,7 +174,7 @@ void addCableTrays(RoomSpace& room, const std::string& tag) {
             const double radius = random.range(0.012, 0.022);
             const double cy = y + 0.05 + (w - 0.1) * (i + 0.5) / cables;
             std::vector<Vec3d> path;
-            const int bends = 6;
+            const int bends = 3;
             for (int k = 0; k <= bends; ++k) {
                 path.emplace_back(
                     std::lerp(-0.06, room.sizeX + 0.06, static_cast<double>(k) / bends),
@@ -208,12 +212,54 @@ void addDucts(RoomSpace& room, const std::string& tag) {
     }
 }
 
+void addFittings(RoomSpace& room, const std::string& tag) {
+    SceneKit& kit = room.kit;
+    Random& random = room.random;
+    kit.beginObject("Fittings " + tag);
+    kit.paint(room.colours.yellow);  // lines along the aisles
+    constexpr double kHalf = 1.0, kLine = 0.09;
+    const double mx = room.sizeX / 2, my = room.sizeY / 2, edge = 0.4;
+    for (const double sign : {-1.0, 1.0}) {
+        const double y = my + sign * kHalf, x = mx + sign * kHalf;
+        kit.box(room.at, {edge, y - kLine / 2, -0.01}, {mx - kHalf - 0.1, y + kLine / 2, 0.004});
+        kit.box(room.at, {mx + kHalf + 0.1, y - kLine / 2, -0.01},
+                {room.sizeX - edge, y + kLine / 2, 0.004});
+        kit.box(room.at, {x - kLine / 2, edge, -0.01}, {x + kLine / 2, my - kHalf - 0.1, 0.005});
+        kit.box(room.at, {x - kLine / 2, my + kHalf + 0.1, -0.01},
+                {x + kLine / 2, room.sizeY - edge, 0.005});
+    }
+    for (int side = 0; side < 4; ++side) {  // what hangs on the walls, right of the doors
+        const double half = (side % 2 == 0 ? room.sizeY : room.sizeX) / 2 - 0.185;
+        const Frame wall = room.at.moved({mx, my, 0}).quarterTurned(side).moved({1.0, -half, 0});
+        if (!kit.keeps(random) || (room.wallMask >> side & 1u) == 0) continue;
+        kit.paint(room.colours.red);
+        const std::array<ProfilePoint, 7> bottle{{{0, 0.85},
+                                                  {0.08, 0.85},
+                                                  {0.085, 0.9},
+                                                  {0.085, 1.3},
+                                                  {0.05, 1.37},
+                                                  {0.02, 1.4},
+                                                  {0, 1.47}}};
+        kit.lathe(wall.moved({0.25, 0.12, 0}), bottle);
+        kit.box(wall, {0.1, -0.1, 1.75}, {0.4, 0.012, 2.05});
+        kit.paint(room.colours.cabinet);
+        kit.box(wall, {0.62, -0.1, 1.1}, {1.12, 0.16, 1.8});
+        kit.box(wall, {0.64, 0.15, 1.12}, {1.1, 0.175, 1.78});
+        kit.paint(room.colours.galvanised);
+        for (int k = 0; k < 3; ++k) {
+            const double x = 0.7 + 0.14 * k, r = random.range(0.012, 0.022);
+            kit.rod(wall, {x, 0.03 + r, 1.75}, {x, 0.03 + r, room.height + 0.011}, r);
+        }
+    }
+}
+
 void addLamps(RoomSpace& room, const std::string& tag) {
     SceneKit& kit = room.kit;
     kit.beginObject("Lamps " + tag);
     for (int i = 0; i < 4; ++i) {
-        const double x = room.sizeX * (i % 2 == 0 ? 0.27 : 0.73);
-        const double y = room.sizeY * (i / 2 == 0 ? 0.38 : 0.62), z = 2.9;
+        // Over the aisles, which cross in the middle.
+        const double x = room.sizeX * (i == 0 ? 0.25 : i == 1 ? 0.75 : 0.5);
+        const double y = room.sizeY * (i == 2 ? 0.25 : i == 3 ? 0.75 : 0.503), z = 3.45 + 0.02 * i;
         kit.paint(room.colours.white);
         kit.box(room.at, {x - 0.62, y - 0.07, z}, {x + 0.62, y + 0.07, z + 0.05});
         kit.paint(room.colours.lamp);

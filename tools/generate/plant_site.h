@@ -18,6 +18,8 @@ void addBoiler(Site site, const Vec3d& centre, double width, double z0, double z
 void addTurbines(Site site, double length, double width, double z);
 // Columns, roof trusses and the crane of the hall.
 void addHallFrame(Site site, double length, double width, double z0, double z1);
+// Parapet rail, fans, vents and stacks on a roof of that size; its top at local z = 0.
+void addRoofPlant(Site site, double length, double width);
 // Everything around the buildings, ground included.
 void addSurroundings(Site site);
 

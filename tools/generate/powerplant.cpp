@@ -9,12 +9,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace pagoda::tools {
 namespace {
 
 constexpr uint64_t kUnitTriangles = 8'000'000;
 constexpr double kUnitPitch = 210;  // metres from unit to unit, along y
+constexpr double kLift = 0.005;
 constexpr double kSlab = 0.26, kInner = 0.22, kOuter = 0.36;
 constexpr double kDoor = 1.3, kDoorHeight = 2.25;
 
@@ -23,9 +25,9 @@ struct Storey {
     std::string name;
     Frame at;  // floor level, outer corner of the grid
     int columns, rows;
-    double cellX, cellY, height;  // floor to floor
-    bool hasShaft = false;        // the inner cells are open to the boiler
-    bool hasWindows = false;
+    double cellX, cellY, height;   // floor to floor
+    bool hasShaft = false;         // the inner cells are open to the boiler
+    Rectangle window{0, 0, 0, 0};  // in the middle of each outer cell wall; about its middle
 
     [[nodiscard]] double clear() const { return height - kSlab; }
     [[nodiscard]] bool isShaft(int i, int j) const {
@@ -40,7 +42,7 @@ void addWindows(Site& site, const Frame& wall, const std::vector<Rectangle>& hol
                    .height = hole.v1 - hole.v0,
                    .wallThickness = kOuter,
                    .columns = 3,
-                   .rows = 2,
+                   .rows = std::max(2, static_cast<int>(std::lround((hole.v1 - hole.v0) / 1.5))),
                    .frameMaterial = site.colours.dark,
                    .glassMaterial = site.colours.glass,
                    .hasSill = true});
@@ -56,17 +58,21 @@ void addOuterWalls(Site& site, const Storey& storey) {
     for (int side = 0; side < 4; ++side) {
         const double length = lengths[side % 2];
         // Two long walls take the corners, the others end inside them.
-        const double reach = side % 2 == 0 ? kOuter / 2 : -kOuter / 2 + kPoke;
-        const Frame wall = corners[side].quarterTurned(side).moved({-reach, 0, 0});
+        const double reach = side % 2 == 0 ? kOuter / 2 + 0.012 : -kOuter / 2 + kPoke;
+        const bool isInset = side % 2 == 1;  // ends inside the others, so shares no plane with them
+        const Frame wall =
+            corners[side].quarterTurned(side).moved({-reach, 0, isInset ? kLift : 0});
         const int cells = side % 2 == 0 ? storey.columns : storey.rows;
         std::vector<Rectangle> holes;
-        for (int i = 0; storey.hasWindows && i < cells; ++i) {
+        for (int i = 0; storey.window.u1 > 0 && i < cells; ++i) {
             const double middle = reach + length * (i + 0.5) / cells;
-            holes.push_back({middle - 2.1, 1.1, middle + 2.1, 2.9});
+            holes.push_back({middle + storey.window.u0, storey.window.v0, middle + storey.window.u1,
+                             storey.window.v1});
         }
         site.kit.beginObject(fmt::format("Outer wall {} {}", storey.name, "SENW"[side]));
         site.kit.paint(site.colours.cladding);
-        addWall(site.kit, wall, length + 2 * reach, storey.clear(), kOuter, holes);
+        addWall(site.kit, wall, length + 2 * reach, storey.clear() - (isInset ? 2 * kLift : 0),
+                kOuter, holes);
         addWindows(site, wall, holes);
     }
 }
@@ -111,9 +117,9 @@ void addInnerWalls(Site& site, const Storey& storey) {
             if (isOpen(i, j) || isOpen(i - 1, j)) continue;
             const double start = (j == 0 ? kOuter : kInner) / 2 - kPoke;
             const double end = (j + 1 == storey.rows ? kOuter : kInner) / 2 - kPoke;
-            const Frame wall =
-                storey.at.moved({i * storey.cellX, j * storey.cellY + start, 0}).quarterTurned(1);
-            addInnerWall(site, wall, storey.cellY - start - end, storey.clear());
+            const Frame wall = storey.at.moved({i * storey.cellX, j * storey.cellY + start, kLift})
+                                   .quarterTurned(1);
+            addInnerWall(site, wall, storey.cellY - start - end, storey.clear() - 2 * kLift);
         }
     }
 }
@@ -144,7 +150,7 @@ void fillRoom(Site& site, const Storey& storey, int i, int j) {
     const std::string tag = fmt::format("{}-{}{}", storey.name, static_cast<char>('A' + j), i + 1);
     const Frame corner = storey.at.moved({i * storey.cellX, j * storey.cellY, 0});
     Random random = site.random.fork(static_cast<uint64_t>(i * 16 + j));
-    constexpr double kMargin = 0.24, kAisle = 0.95;
+    constexpr double kMargin = 0.24, kAisle = 1.75;
     const double size = std::min(storey.cellX, storey.cellY) / 2 - kMargin - kAisle;
     for (int quarter = 0; quarter < 4; ++quarter) {
         const bool isEast = quarter == 1 || quarter == 2, isNorth = quarter >= 2;
@@ -152,14 +158,20 @@ void fillRoom(Site& site, const Storey& storey, int i, int j) {
                              .moved({isEast ? storey.cellX - kMargin : kMargin,
                                      isNorth ? storey.cellY - kMargin : kMargin, 0})
                              .quarterTurned(quarter);
-        Zone zone{site.kit, site.colours, at, size, storey.clear(), random.fork(quarter + 1u)};
+        Zone zone{site.kit, site.colours,   at,
+                  size,     storey.clear(), random.fork(static_cast<uint64_t>(quarter) + 1)};
         if (site.kit.keeps(random)) addEquipment(zone, fmt::format("{}.{}", tag, quarter + 1));
     }
     RoomSpace room{site.kit,     site.colours,   corner,        storey.cellX,
                    storey.cellY, storey.clear(), random.fork(9)};
+    const int sides[4][2] = {{i, j - 1}, {i + 1, j}, {i, j + 1}, {i - 1, j}};
+    for (unsigned side = 0; side < 4; ++side) {
+        if (storey.isShaft(sides[side][0], sides[side][1])) room.wallMask &= ~(1u << side);
+    }
     addPipeRack(room, tag);
     if (site.kit.keeps(random)) addCableTrays(room, tag);
     if (site.kit.keeps(random)) addDucts(room, tag);
+    if (site.kit.keeps(random)) addFittings(room, tag);
     if (site.kit.keeps(random)) addLamps(room, tag);
 }
 
@@ -192,7 +204,7 @@ void addBoilerHouse(const Site& site) {
                             .cellY = kCell,
                             .height = kBoilerStorey,
                             .hasShaft = true,
-                            .hasWindows = true};
+                            .window = {-3.4, 1.2, 3.4, 3.6}};
         addStorey({site.kit, site.colours, site.at,
                    site.random.fork(100u + static_cast<uint64_t>(level))},
                   storey, level == 0);
@@ -201,6 +213,7 @@ void addBoilerHouse(const Site& site) {
     site.kit.beginObject("Boiler house roof");
     site.kit.paint(site.colours.dark);
     addSlab(site.kit, at.moved({0, 0, top}), {-0.3, -0.3, side + 0.3, side + 0.3}, kSlab);
+    addRoofPlant({site.kit, site.colours, at.moved({0, 0, top}), site.random.fork(4)}, side, side);
     addBoiler({site.kit, site.colours, at, site.random.fork(3)}, {side / 2, side / 2, 0},
               2 * kCell - 4.4, 0.6, top - 1.5);
     site.kit.endGroup();
@@ -216,13 +229,14 @@ void addTurbineHall(const Site& site) {
                  .cellY = kHallY / 3,
                  .height = kDeck,
                  .hasShaft = false,
-                 .hasWindows = true};
+                 .window = {-2.6, 1.2, 2.6, 3.2}};
     addStorey({site.kit, site.colours, site.at, site.random.fork(11)}, lower, true);
     const Frame deck = site.at.moved({0, 0, kDeck});
     Storey upper = lower;
     upper.name = "T1";
     upper.at = deck;
     upper.height = kHallTop - kDeck;
+    upper.window = {-2.1, 3.0, 2.1, 12.0};
     Site own{site.kit, site.colours, deck, site.random.fork(12)};
     addSlabOf(own, upper, false);
     addOuterWalls(own, upper);
@@ -230,6 +244,8 @@ void addTurbineHall(const Site& site) {
     site.kit.paint(site.colours.dark);
     addSlab(site.kit, deck.moved({0, 0, upper.height}), {-0.3, -0.3, kHallX + 0.3, kHallY + 0.3},
             kSlab);
+    addRoofPlant({site.kit, site.colours, deck.moved({0, 0, upper.height}), site.random.fork(13)},
+                 kHallX, kHallY);
     addHallFrame(own, kHallX, kHallY, 0, upper.clear());
     addTurbines(own, kHallX, kHallY, 0);
     site.kit.endGroup();

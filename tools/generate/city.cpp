@@ -1,0 +1,400 @@
+// city.cpp: a grid of streets and blocks. Each block is closed by houses of its own height, colour
+// and roof around a yard; facades have window openings with frames, glass and sills. More triangles
+// make more blocks.
+#include "tools/generate/building.h"
+#include "tools/generate/detail_search.h"
+#include "tools/generate/generator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace pagoda::tools {
+namespace {
+
+constexpr double kBlockX = 84, kBlockY = 62, kStreet = 18, kDepthOfHouse = 12.5;
+constexpr double kWalk = 3.6, kCurb = 0.14;  // pavement: width and height above the street
+constexpr double kTrianglesPerBlock = 150000;
+
+struct CityPalette {
+    explicit CityPalette(SceneKit& kit)
+        : asphalt(kit.addMaterial("asphalt", 0x5E6064)),
+          pavement(kit.addMaterial("pavement", 0xA9A59C)),
+          line(kit.addMaterial("road marking", 0xE8E6DE)),
+          grass(kit.addMaterial("grass", 0x7E9460)),
+          leaf(kit.addMaterial("leaf", 0x5B8048)),
+          bark(kit.addMaterial("bark", 0x6E5843)),
+          frame(kit.addMaterial("window frame", 0xE7E4DC)),
+          stone(kit.addMaterial("stone", 0xC9C1B2)),
+          glass(kit.addMaterial("glass", 0x5C7486)),
+          shopGlass(kit.addMaterial("shop glass", 0x9DBAC4, 0.4)),
+          tile(kit.addMaterial("roof tile", 0x9A5A43)),
+          slate(kit.addMaterial("slate", 0x5F666E)),
+          metal(kit.addMaterial("metal", 0x8C9296)),
+          dark(kit.addMaterial("dark metal", 0x3F4347)),
+          lamp(kit.addMaterial("lamp", 0xFFF2D2)),
+          tyre(kit.addMaterial("tyre", 0x2B2C2E)) {
+        const uint32_t walls[8] = {0xD9C7A3, 0xC98F6B, 0xE2DBCB, 0xB96950,
+                                   0xA9B2A0, 0xD8B48C, 0x9FA8B3, 0xC7B7A8};
+        for (size_t i = 0; i < 8; ++i)
+            facades[i] = kit.addMaterial(fmt::format("facade {}", i + 1), walls[i]);
+        const uint32_t cars[5] = {0xA63C34, 0x3E5C84, 0xD8D8D4, 0x4A4C50, 0xB9A23C};
+        for (size_t i = 0; i < 5; ++i)
+            paints[i] = kit.addMaterial(fmt::format("car {}", i + 1), cars[i]);
+    }
+    uint32_t asphalt, pavement, line, grass, leaf, bark, frame, stone, glass, shopGlass, tile,
+        slate, metal, dark, lamp, tyre;
+    std::array<uint32_t, 8> facades{};
+    std::array<uint32_t, 5> paints{};
+};
+
+struct House {
+    SceneKit& kit;
+    const CityPalette& colours;
+    Frame at;  // at the street: x along the facade, y into the block
+    double width, depth;
+    Random random;
+    std::string name;
+};
+
+struct FacadeStyle {
+    int storeys, bays;
+    double ground, storey, bayWidth, windowWidth, windowHeight;
+    uint32_t wall;
+    bool hasSills, hasCornices;
+};
+
+// One facade of thickness 0.4 with its windows; `isStreet`: a shop front below.
+void addFacade(House& house, const Frame& at, double length, const FacadeStyle& style,
+               bool isStreet) {
+    SceneKit& kit = house.kit;
+    const int bays = std::max(1, static_cast<int>(length / style.bayWidth));
+    const double pitch = length / bays, height = style.ground + style.storeys * style.storey;
+    std::vector<Rectangle> windows, shops;
+    for (int bay = 0; bay < bays; ++bay) {
+        const double middle = pitch * (bay + 0.5), half = style.windowWidth / 2;
+        for (int storey = 0; storey < style.storeys; ++storey) {
+            const double z = style.ground + storey * style.storey + 0.85;
+            windows.push_back({middle - half, z, middle + half, z + style.windowHeight});
+        }
+        const double wide = isStreet ? pitch * 0.38 : half;
+        shops.push_back({middle - wide, isStreet ? 0.45 : 1.0, middle + wide, style.ground - 0.7});
+    }
+    std::vector<Rectangle> holes = windows;
+    holes.insert(holes.end(), shops.begin(), shops.end());
+    kit.paint(style.wall);
+    addWall(kit, at, length, height, 0.4, holes);
+    for (const Rectangle& hole : windows) {
+        addWindow(kit, at.moved({hole.u0, 0, hole.v0}),
+                  {.width = hole.u1 - hole.u0,
+                   .height = hole.v1 - hole.v0,
+                   .wallThickness = 0.4,
+                   .columns = 2,
+                   .rows = 2,
+                   .frameMaterial = house.colours.frame,
+                   .glassMaterial = house.colours.glass,
+                   .hasSill = style.hasSills});
+    }
+    for (const Rectangle& hole : shops) {
+        addWindow(kit, at.moved({hole.u0, 0, hole.v0}),
+                  {.width = hole.u1 - hole.u0,
+                   .height = hole.v1 - hole.v0,
+                   .wallThickness = 0.4,
+                   .columns = 3,
+                   .rows = 1,
+                   .frameMaterial = house.colours.dark,
+                   .glassMaterial = isStreet ? house.colours.shopGlass : house.colours.glass,
+                   .hasSill = !isStreet});
+    }
+    if (!style.hasCornices) return;
+    kit.paint(house.colours.stone);
+    for (int storey = 0; storey <= style.storeys; ++storey) {
+        const double z = style.ground + storey * style.storey - 0.02,
+                     out = storey == style.storeys ? 0.5 : 0.31;
+        kit.box(at, {-0.006, -out, z - 0.12}, {length + 0.006, -0.12, z + 0.1});
+    }
+}
+
+void addChimneys(House& house, double z) {
+    const int count = house.random.integer(1, 3);
+    for (int i = 0; i < count; ++i) {
+        const double x = house.width * (i + 0.5) / count - 0.35;
+        const double y = house.depth * house.random.range(0.25, 0.75);
+        house.kit.paint(house.colours.facades[1]);
+        house.kit.box(house.at, {x, y, z - 2.0}, {x + 0.7, y + 1.1, z + 1.3});
+        house.kit.paint(house.colours.tile);
+        for (int pot = 0; pot < 3; ++pot) {
+            const double py = y + 0.22 + 0.33 * pot;
+            house.kit.rod(house.at, {x + 0.35, py, z + 1.25}, {x + 0.35, py, z + 1.75}, 0.11);
+        }
+    }
+}
+
+void addGableRoof(House& house, double z) {
+    SceneKit& kit = house.kit;
+    const double rise = house.depth * house.random.range(0.28, 0.42), over = 0.45;
+    kit.beginObject("Roof " + house.name);
+    kit.paint(house.random.chance(0.6) ? house.colours.tile : house.colours.slate);
+    const std::array<glm::dvec2, 3> section{glm::dvec2(-over, -0.05),
+                                            glm::dvec2(house.depth + over, -0.05),
+                                            glm::dvec2(house.depth / 2, rise)};
+    // Its section stands in the y-z plane and runs along x.
+    kit.prism({house.at.point({0, 0, z}), house.at.y, house.at.z, house.at.x}, section, 0.013,
+              house.width - 0.013);
+    const double slope = rise / (house.depth / 2 + over);
+    const int dormers = std::max(1, static_cast<int>(house.width / 5));
+    for (int i = 0; i < dormers; ++i) {
+        const double x = house.width * (i + 0.5) / dormers, y = house.depth * 0.14,
+                     foot = z + slope * (y + over);
+        kit.paint(house.colours.stone);
+        kit.box(house.at, {x - 0.8, y, foot - 0.4}, {x + 0.8, y + 2.6, foot + 1.35});
+        kit.paint(house.colours.slate);
+        const std::array<glm::dvec2, 3> hat{glm::dvec2(-1.0, 0), glm::dvec2(1.0, 0),
+                                            glm::dvec2(0, 0.7)};
+        const Frame face{house.at.point({x, y + 2.9, foot + 1.34}), house.at.x, house.at.z,
+                         -house.at.y};
+        kit.prism(face, hat, 0, 3.1);
+        kit.paint(house.colours.glass);
+        kit.box(house.at, {x - 0.5, y - 0.03, foot + 0.1}, {x + 0.5, y + 0.1, foot + 1.15});
+        kit.paint(house.colours.frame);
+        kit.box(house.at, {x - 0.04, y - 0.05, foot + 0.08}, {x + 0.04, y + 0.09, foot + 1.17});
+    }
+    addChimneys(house, z + rise);
+}
+
+void addFlatRoof(House& house, double z) {
+    SceneKit& kit = house.kit;
+    kit.beginObject("Roof " + house.name);
+    kit.paint(house.colours.slate);
+    addSlab(kit, house.at, {0.21, 0.21, house.width - 0.21, house.depth - 0.21}, 0.3);
+    const Frame top = house.at.moved({0, 0, z});
+    addSlab(kit, top, {0.214, 0.214, house.width - 0.214, house.depth - 0.214}, 0.35);
+    const int units = house.random.integer(2, 5);
+    for (int i = 0; i < units; ++i) {
+        const Frame at = top.moved(
+            {house.width * (i + 0.5) / units, house.depth * house.random.range(0.3, 0.7), 0});
+        const double h = house.random.range(0.9, 2.2);
+        kit.paint(house.colours.metal);
+        kit.box(at, {-0.9, -0.8, -0.02}, {0.9, 0.8, h});
+        kit.paint(house.colours.dark);
+        kit.ring(at.moved({0, 0, h + 0.02}), 0.55, 0.05);
+        for (int blade = 0; blade < 4; ++blade) {
+            kit.box(at.turned(0.785 * 2 * blade), {0.08, -0.1, h + 0.02 + 0.004 * blade},
+                    {0.5, 0.1, h + 0.035 + 0.004 * blade});
+        }
+        for (int slot = 0; slot < 6; ++slot) {
+            if (!kit.keeps(house.random)) continue;
+            kit.box(at, {-0.7, -0.83, 0.2 + 0.11 * slot}, {0.7, -0.78, 0.26 + 0.11 * slot});
+        }
+    }
+    kit.paint(house.colours.metal);
+    kit.rod(top, {house.width * 0.5, 1, -0.02}, {house.width * 0.5, 1, 4.2}, 0.04);
+    for (int i = 0; i < 4; ++i) {
+        kit.rod(top, {house.width * 0.5 - 0.6, 1.0, 3.0 + 0.28 * i},
+                {house.width * 0.5 + 0.6, 1.0, 3.0 + 0.28 * i}, 0.012);
+    }
+}
+
+void addHouse(House house) {
+    Random& random = house.random;
+    FacadeStyle style{};
+    style.storeys = random.integer(3, 7);
+    style.ground = random.range(3.8, 4.6);
+    style.storey = random.range(3.0, 3.5);
+    style.bayWidth = random.range(2.4, 3.3);
+    style.windowWidth = style.bayWidth * random.range(0.4, 0.55);
+    style.windowHeight = style.storey * random.range(0.5, 0.6);
+    style.wall = house.colours.facades[static_cast<size_t>(random.integer(0, 7))];
+    style.hasSills = random.chance(0.8);
+    style.hasCornices = random.chance(0.6);
+    const double height = style.ground + style.storeys * style.storey;
+    house.kit.beginObject("House " + house.name);
+    // Houses leave 1 cm between them; side walls end inside the facades.
+    addFacade(house, house.at.moved({0.005, 0.2, 0}), house.width - 0.01, style, true);
+    style.hasCornices = false;
+    addFacade(house, house.at.moved({house.width - 0.005, house.depth - 0.2, 0}).quarterTurned(2),
+              house.width - 0.01, style, false);
+    house.kit.paint(style.wall);
+    for (const double x : {0.21, house.width - 0.21}) {
+        addWall(house.kit, house.at.moved({x, 0.38, 0.004}).quarterTurned(1), house.depth - 0.76,
+                height - 0.008, 0.39);
+    }
+    for (int storey = 0; storey <= style.storeys; ++storey) {  // floors close the view through
+        const double z =
+            style.ground - 0.3 + storey * style.storey - (storey == style.storeys ? 0.7 : 0);
+        house.kit.box(house.at, {0.39, 0.37, z}, {house.width - 0.39, house.depth - 0.37, z + 0.2});
+    }
+    if (random.chance(0.55)) {
+        addGableRoof(house, height + 0.03);
+    } else {
+        addFlatRoof(house, height - 0.3);
+    }
+}
+
+void addTree(SceneKit& kit, const CityPalette& colours, const Frame& at, Random random) {
+    const double h = random.range(2.2, 3.2), r = random.range(1.3, 2.1);
+    kit.paint(colours.bark);
+    const std::array<ProfilePoint, 4> trunk{
+        {{0.24, -0.02}, {0.15, 0.5}, {0.12, h + 0.6}, {0, h + 0.6}}};
+    kit.lathe(at, trunk);
+    kit.paint(colours.leaf);
+    for (int i = 0; i < 5; ++i) {
+        const double a = 2.4 * i, d = i == 0 ? 0 : r * 0.55;
+        const Frame crown = at.moved(
+            {d * std::cos(a), d * std::sin(a), h + r * (i == 0 ? 1.1 : random.range(0.5, 0.9))});
+        kit.blob(crown, Vec3d(r * 0.75, r * 0.75, r * 0.7), 0.22, random.next());
+    }
+}
+
+void addStreetLamp(SceneKit& kit, const CityPalette& colours, const Frame& at) {
+    kit.paint(colours.dark);
+    const std::array<Vec3d, 4> pole{Vec3d(0, 0, -0.02), Vec3d(0, 0, 6.6), Vec3d(0, -1.4, 7.2),
+                                    Vec3d(0, -2.0, 7.2)};
+    kit.tube(at, pole, 0.07, 0.8);
+    kit.paint(colours.lamp);
+    kit.box(at, {-0.14, -2.5, 7.12}, {0.14, -1.9, 7.25});
+}
+
+void addCar(SceneKit& kit, const CityPalette& colours, const Frame& at, Random random) {
+    kit.paint(colours.paints[static_cast<size_t>(random.integer(0, 4))]);
+    const std::array<glm::dvec2, 8> body{
+        glm::dvec2(-2.1, 0.28), {2.1, 0.28},  {2.15, 0.6}, {1.9, 0.85}, {0.9, 0.95},
+        {-1.5, 0.98},           {-2.05, 0.9}, {-2.15, 0.6}};
+    const Frame side{at.point({0, 0.85, 0}), at.x, at.z, -at.y};
+    kit.prism(side, body, 0, 1.7);
+    kit.paint(colours.glass);
+    const std::array<glm::dvec2, 4> cabin{
+        glm::dvec2(-1.45, 0.93), {0.95, 0.9}, {0.3, 1.42}, {-1.0, 1.44}};
+    kit.prism(side.moved({0, 0, 0.1}), cabin, 0, 1.5);
+    for (const double x : {-1.3, 1.3}) {
+        for (const double y : {-0.83, 0.65}) {
+            kit.paint(colours.tyre);
+            kit.rod(at, {x, y, 0.31}, {x, y + 0.19, 0.31}, 0.31);
+            kit.paint(colours.metal);
+            kit.rod(at, {x, y - 0.006, 0.31}, {x, y + 0.196, 0.31}, 0.18);
+        }
+    }
+}
+
+void addBlock(SceneKit& kit, const CityPalette& colours, const Frame& at, Random random,
+              const std::string& name) {
+    kit.beginGroup("Block " + name);
+    kit.beginObject("Pavement " + name);
+    kit.paint(colours.pavement);
+    const std::array<Rectangle, 1> yard{
+        {{kWalk + kDepthOfHouse + 0.6, kWalk + kDepthOfHouse + 0.6,
+          kBlockX - kWalk - kDepthOfHouse - 0.6, kBlockY - kWalk - kDepthOfHouse - 0.6}}};
+    addSlab(kit, at, {0, 0, kBlockX, kBlockY}, 0.4, yard);
+    kit.beginObject("Yard " + name);
+    kit.paint(colours.grass);
+    const Rectangle& y = yard[0];
+    const uint64_t bumps = random.next();
+    kit.sheet(at.moved({y.u0 - 0.2, y.v0 - 0.2, -0.15}), y.u1 - y.u0 + 0.4, y.v1 - y.v0 + 0.4, 40,
+              [&](double px, double py) {
+                  return 0.12 * valueNoise({px * 0.3, py * 0.3, 0.5}, bumps);
+              });
+    int house = 0;
+    for (int side = 0; side < 4; ++side) {
+        const bool isLong = side % 2 == 0;
+        const double length = (isLong ? kBlockX : kBlockY - 2 * kDepthOfHouse - 0.04) - 2 * kWalk;
+        const Vec3d corner[4] = {{kWalk, kWalk, 0},
+                                 {kBlockX - kWalk, kWalk + kDepthOfHouse + 0.02, 0},
+                                 {kBlockX - kWalk, kBlockY - kWalk, 0},
+                                 {kWalk, kBlockY - kWalk - kDepthOfHouse - 0.02, 0}};
+        const int count = std::max(1, static_cast<int>(std::lround(length / random.range(13, 18))));
+        double x = 0;
+        for (int i = 0; i < count; ++i) {
+            const double width =
+                i + 1 == count ? length - x : length / count * random.range(0.85, 1.15);
+            const Frame front = at.moved(corner[side]).quarterTurned(side).moved({x, 0, 0});
+            addHouse({kit, colours, front, width, kDepthOfHouse,
+                      random.fork(static_cast<uint64_t>(++house)),
+                      fmt::format("{}.{}", name, house)});
+            x += width;
+        }
+    }
+    kit.beginObject("Trees " + name);
+    for (int i = 0; i < 14; ++i) {
+        const bool inYard = i < 6;
+        const double side = i % 2 == 0 ? 0.9 : kBlockY - 0.9;
+        const Vec3d place =
+            inYard ? Vec3d(random.range(y.u0 + 3, y.u1 - 3), random.range(y.v0 + 3, y.v1 - 3), -0.2)
+                   : Vec3d(8 + (i - 6) / 2 * 21.0 + random.range(-1, 1), side, 0);
+        if (kit.keeps(random))
+            addTree(kit, colours, at.moved(place), random.fork(static_cast<uint64_t>(i)));
+    }
+    kit.beginObject("Lamps " + name);
+    for (int i = 0; i < 4; ++i) {
+        addStreetLamp(kit, colours, at.moved({14 + i * 19.0, 0.5, 0}));
+        addStreetLamp(kit, colours, at.moved({14.3 + i * 19.0, kBlockY - 0.5, 0}).quarterTurned(2));
+    }
+    kit.beginObject("Cars " + name);
+    for (int i = 0; i < 12; ++i) {
+        const double x = 5 + i * 6.3 + random.range(0, 0.8),
+                     lane = i % 2 == 0 ? -1.4 : kBlockY + 1.4;
+        if (random.chance(0.7))
+            addCar(kit, colours, at.moved({x, lane, -kCurb}),
+                   random.fork(static_cast<uint64_t>(50 + i)));
+    }
+    kit.endGroup();
+}
+
+void addStreets(SceneKit& kit, const CityPalette& colours, int nx, int ny) {
+    kit.beginObject("Streets");
+    kit.paint(colours.asphalt);
+    const double x = nx * (kBlockX + kStreet) + kStreet, y = ny * (kBlockY + kStreet) + kStreet;
+    addSlab(kit, Frame{}.moved({-kStreet, -kStreet, -kCurb}), {0, 0, x, y}, 0.21);
+    kit.beginObject("Road markings");
+    kit.paint(colours.line);
+    for (int j = 0; j <= ny; ++j) {
+        const double cy = j * (kBlockY + kStreet) - kStreet / 2;
+        for (double cx = 0; cx < x - kStreet; cx += 6) {
+            if (std::fmod(cx, kBlockX + kStreet) > kBlockX - 3) continue;
+            kit.box(Frame{}, {cx, cy - 0.08, -kCurb - 0.01}, {cx + 3, cy + 0.08, -kCurb + 0.006});
+        }
+    }
+    for (int i = 0; i <= nx; ++i) {
+        const double cx = i * (kBlockX + kStreet) - kStreet / 2;
+        for (double cy = 0; cy < y - kStreet; cy += 6) {
+            if (std::fmod(cy, kBlockY + kStreet) > kBlockY - 3) continue;
+            kit.box(Frame{}, {cx - 0.08, cy, -kCurb - 0.01}, {cx + 0.08, cy + 3, -kCurb + 0.006});
+        }
+    }
+}
+
+void buildCity(SceneKit& kit, int nx, int ny, uint64_t seed) {
+    const CityPalette colours(kit);
+    addStreets(kit, colours, nx, ny);
+    for (int j = 0; j < ny; ++j) {
+        for (int i = 0; i < nx; ++i) {
+            const Frame at = Frame{}.moved({i * (kBlockX + kStreet), j * (kBlockY + kStreet), 0});
+            addBlock(kit, colours, at, Random(seed).fork(static_cast<uint64_t>(j * 65536 + i)),
+                     fmt::format("{}-{}", j + 1, i + 1));
+        }
+    }
+    kit.flush();
+}
+
+}  // namespace
+
+SceneViews generateCity(ooc::TriangleSink& sink, const GenerateOptions& options) {
+    const double blocks =
+        std::max(1.0, static_cast<double>(options.triangles) / kTrianglesPerBlock);
+    const int nx = std::max(1, static_cast<int>(std::lround(std::sqrt(blocks * 0.85))));
+    const int ny = std::max(1, static_cast<int>(std::lround(blocks / nx)));
+    const double detail = findDetail(options.triangles, "city",
+                                     [&](SceneKit& kit) { buildCity(kit, nx, ny, options.seed); });
+    SceneKit kit(&sink, detail);
+    buildCity(kit, nx, ny, options.seed);
+    const double x = nx * (kBlockX + kStreet), y = ny * (kBlockY + kStreet);
+    SceneViews views;
+    views.outside = {{{-0.25 * x - 40, -0.3 * y - 30, 0.35 * x + 50}, {0.45 * x, 0.4 * y, 0}},
+                     {{-9, -9, 6}, {0.3 * x, 12, 7}},
+                     {{0.55 * x, -45, 40}, {0.4 * x, 40, 8}}};
+    return views;
+}
+
+}  // namespace pagoda::tools
