@@ -5,6 +5,7 @@
 #include "ooc/readers/ply_values.h"
 #include "ooc/readers/ply_vertices.h"
 
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -42,7 +43,9 @@ private:
     std::filesystem::path scratchFolder_;
     std::vector<Place> places_;
     std::optional<PlyVertices> vertices_;
-    uint64_t surplusLines_ = 0;  // ASCII lines with more values than the header announces
+    // Of each element: ASCII lines with more values than the header announces. Kept between
+    // readings, as the vertices are.
+    std::vector<uint64_t> surplusLines_;
 };
 
 PlyReader::Role PlyReader::roleOf(const PlyElement& element) const {
@@ -60,7 +63,7 @@ PlyReader::Place PlyReader::walk(size_t element, ProgressMeter* meter, Visit vis
         TextStream stream(source_, meter, place.offset, place.line);
         PlyAsciiValues values(stream);
         visit(values);
-        surplusLines_ += values.ignoredValues();
+        surplusLines_[element] = values.ignoredValues();
         return {stream.offset(), stream.nextLineNumber()};
     }
     InputStream stream(source_, meter);
@@ -113,8 +116,8 @@ PlyReader::Place PlyReader::pass(size_t index, ProgressMeter* meter) {
 void PlyReader::read(TriangleSink& sink) {
     source_.checkUnchanged();
     ProgressMeter meter(sink, 1);
-    surplusLines_ = 0;
     const std::vector<PlyElement>& elements = header_.elements;
+    surplusLines_.resize(elements.size());
     const auto vertexElement = header_.findElement("vertex");
     if (vertexElement && !vertices_) {
         for (size_t k = 0; k < *vertexElement; ++k) places_[k + 1] = pass(k, nullptr);
@@ -155,9 +158,9 @@ void PlyReader::sayWhatIsIgnored(TriangleSink& sink) const {
             sink.ignored("elements that are no vertices, faces or strips", element.count);
         }
     }
-    if (surplusLines_ > 0) {
-        sink.ignored("lines with more values than the header announces", surplusLines_);
-    }
+    const uint64_t surplus =
+        std::accumulate(surplusLines_.begin(), surplusLines_.end(), uint64_t{0});
+    if (surplus > 0) sink.ignored("lines with more values than the header announces", surplus);
 }
 
 }  // namespace

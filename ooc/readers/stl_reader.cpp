@@ -9,6 +9,8 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace pagoda::ooc {
@@ -94,10 +96,11 @@ private:
         TextStream text;
         TriangleBatcher batcher;
         std::vector<Vec3d> corners;  // of the facet
-        bool isInFacet = false, isInSolid = false;
+        bool isInFacet = false, isInSolid = false, hasSolid = false;
         uint64_t strayWords = 0;
     };
     void readLine(State& state, TextCursor cursor) const;
+    static void beginSolid(State& state, std::string name);
     static void endFacet(State& state);
 
     SourceFile source_;
@@ -137,7 +140,8 @@ void TextStlReader::readLine(State& state, TextCursor cursor) const {
                 source_.failAtLine(state.text.lineNumber(), "a facet of more than 2048 corners");
             }
         } else if (equalsIgnoringCase(word, "facet")) {
-            if (state.isInFacet) endFacet(state);  // no endfacet
+            if (state.isInFacet) endFacet(state);        // no endfacet
+            if (!state.hasSolid) beginSolid(state, {});  // no word "solid" by itself
             state.isInFacet = true;
             TextCursor ahead = cursor;
             if (equalsIgnoringCase(ahead.word(), "normal")) {
@@ -148,8 +152,7 @@ void TextStlReader::readLine(State& state, TextCursor cursor) const {
             endFacet(state);
         } else if (equalsIgnoringCase(word, "solid")) {
             state.isInSolid = true;
-            const std::string name = toUtf8(cursor.rest());
-            state.batcher.setTarget(state.sink.addObject({name, ObjectInfo::kNoParent}), 0);
+            beginSolid(state, toUtf8(cursor.rest()));
         } else if (equalsIgnoringCase(word, "endsolid")) {
             state.isInSolid = false;
             (void)cursor.rest();
@@ -158,6 +161,11 @@ void TextStlReader::readLine(State& state, TextCursor cursor) const {
             ++state.strayWords;
         }
     }
+}
+
+void TextStlReader::beginSolid(State& state, std::string name) {
+    state.hasSolid = true;
+    state.batcher.setTarget(state.sink.addObject({std::move(name), ObjectInfo::kNoParent}), 0);
 }
 
 void TextStlReader::endFacet(State& state) {
