@@ -6,6 +6,7 @@
 #include "ooc/readers/reader.h"
 
 #include <benchmark/benchmark.h>
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -218,6 +219,7 @@ void report(benchmark::State& state, const CountingSink& sink, uint64_t fileByte
 
 void read(benchmark::State& state, Files& files, const Workload& workload, bool isAgain) {
     const auto path = files.path(workload);
+    malloc_trim(0);  // so that what making the files left does not hide the growth
     WatchingSink watching;
     const auto kept = openReader(path, {});
     kept->read(watching);
