@@ -124,6 +124,12 @@ std::vector<std::byte> interleave(const GeometryView& geometry, const GeometryHe
     return vertices;
 }
 
+// Version 1 packs better; the library writes version 0 unless told, and is told through a global.
+void useIndexVersion1() {
+    static const bool isSet = (meshopt_encodeIndexVersion(1), true);
+    (void)isSet;
+}
+
 void encodeMeshopt(const GeometryView& geometry, const GeometryHead& head, ByteWriter& out) {
     const size_t strideBytes = VertexLayout(head).strideBytes;
     const std::vector<std::byte> vertices = interleave(geometry, head);
@@ -135,6 +141,7 @@ void encodeMeshopt(const GeometryView& geometry, const GeometryHead& head, ByteW
                                                        strideBytes));
     }
     if (head.triangleCount > 0) {
+        useIndexVersion1();
         indexStream.resize(
             meshopt_encodeIndexBufferBound(geometry.indices.size(), head.vertexCount));
         indexStream.resize(meshopt_encodeIndexBuffer(indexStream.data(), indexStream.size(),
