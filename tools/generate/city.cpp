@@ -114,7 +114,7 @@ void addFacade(House& house, const Frame& at, double length, const FacadeStyle& 
     for (int storey = 0; storey <= style.storeys; ++storey) {
         const double z = style.ground + storey * style.storey - 0.02,
                      out = storey == style.storeys ? 0.5 : 0.31;
-        kit.box(at, {-0.006, -out, z - 0.12}, {length + 0.006, -0.12, z + 0.1});
+        kit.box(at, {0.002, -out, z - 0.12}, {length - 0.002, -0.12, z + 0.1});
     }
 }
 
@@ -169,7 +169,6 @@ void addFlatRoof(House& house, double z) {
     SceneKit& kit = house.kit;
     kit.beginObject("Roof " + house.name);
     kit.paint(house.colours.slate);
-    addSlab(kit, house.at, {0.21, 0.21, house.width - 0.21, house.depth - 0.21}, 0.3);
     const Frame top = house.at.moved({0, 0, z});
     addSlab(kit, top, {0.214, 0.214, house.width - 0.214, house.depth - 0.214}, 0.35);
     const int units = house.random.integer(2, 5);

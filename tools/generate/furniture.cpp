@@ -118,10 +118,10 @@ void Furnisher::deskLamp(const Frame& at) {
 void Furnisher::keyboard(const Frame& at) {
     kit.paint(colours.black);
     kit.box(at, {-0.22, -0.07, -0.003}, {0.22, 0.07, 0.014});
+    if (!kit.keeps(random)) return;
     kit.paint(colours.white);
     for (int row = 0; row < 5; ++row) {
         for (int key = 0; key < 14; ++key) {
-            if (!kit.keeps(random)) continue;
             const double x = -0.21 + 0.03 * key + 0.004 * row, y = -0.062 + 0.025 * row;
             kit.box(at, {x, y, 0.012}, {std::min(x + 0.026, 0.216), y + 0.021, 0.021}, kNoBottom);
         }

@@ -57,6 +57,7 @@ private:
     void book(const Frame& at, double thickness, double height, double depth);
     void cushion(const Frame& at, double x, double y, double z);
     int count_ = 0;
+    int curtainFabric_ = -1;  // one a room
 };
 
 }  // namespace pagoda::tools

@@ -194,9 +194,9 @@ void Furnisher::ceilingPanel(const Frame& at) {
         const double y = -0.225 + 0.15 * i;
         kit.rod(at, {-0.58, y, -0.062}, {0.58, y, -0.062}, 0.02);
     }
+    if (!kit.keeps(random)) return;
     kit.paint(colours.steel);
     for (int i = 0; i < 16; ++i) {  // louvre
-        if (!kit.keeps(random)) continue;
         const double x = -0.56 + 0.0745 * i;
         kit.box(at, {x, -0.3, -0.1}, {x + 0.004, 0.3, -0.045});
     }
@@ -204,13 +204,23 @@ void Furnisher::ceilingPanel(const Frame& at) {
 
 void Furnisher::curtain(const Frame& at, double width, double height) {
     begin("Curtain");
-    kit.paint(colours.fabrics[random.integer(0, 4)]);
-    const Frame upright{at.origin, at.x, at.z, -at.y};
-    const double waves = 2 * kPi * std::round(width / 0.11) / width, phase = random.range(0, 6);
-    kit.sheet(upright, width, height, 44, [&](double x, double y) {
-        return 0.026 * std::sin(waves * x + phase + 0.25 * std::sin(y * 2.3)) *
-               (1.1 - 0.25 * y / height);
-    });
+    if (curtainFabric_ < 0) curtainFabric_ = random.integer(0, 4);
+    kit.paint(colours.fabrics[curtainFabric_]);
+    const int waves = static_cast<int>(std::lround(width / 0.1));
+    const double phase = random.range(0, 6);
+    const int across = waves * std::max(4, static_cast<int>(6 * std::sqrt(kit.detail())));
+    const int up = std::max(3, static_cast<int>(6 * std::sqrt(kit.detail())));
+    const auto corner = [&](int i, int j) {
+        const double x = width * i / across, z = height * j / up;
+        const double fold =
+            std::sin(2 * kPi * waves * x / width + phase + 0.25 * std::sin(z * 2.3));
+        return at.point({x, 0.03 * fold * (1.15 - 0.35 * z / height), z});
+    };
+    for (int j = 0; j < up; ++j) {
+        for (int i = 0; i < across; ++i) {
+            kit.quad(corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1));
+        }
+    }
 }
 
 void Furnisher::crates(const Frame& at, double width) {

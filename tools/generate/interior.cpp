@@ -20,7 +20,7 @@ constexpr double kClear = kStorey - kSlab, kInner = 0.15, kOuter = 0.34;
 constexpr double kDepth = 2 * kRoomY + kCorridor;
 constexpr double kLift = 0.004;  // walls that end inside others share no plane with them
 constexpr double kDoor = 0.95, kDoorHeight = 2.08;
-constexpr double kTrianglesPerRoom = 21000;
+constexpr double kTrianglesPerRoom = 32000;
 constexpr uint64_t kMaxColumns = 16, kMaxStoreys = 8;
 
 struct Layout {
@@ -37,6 +37,11 @@ Layout layoutFor(uint64_t triangles) {
     layout.columns = std::max<uint64_t>(
         2, static_cast<uint64_t>(std::lround(columns / static_cast<double>(layout.wings))));
     return layout;
+}
+
+// Seen from its window, a room's door is always on the left.
+double doorAt(int side, double roomStart) {
+    return roomStart + (side == 0 ? 0.75 : kRoomX - 0.75 - kDoor);
 }
 
 struct Builder {
@@ -110,8 +115,9 @@ void addPartitions(Builder& b, const Frame& at, const std::string& name) {
         std::vector<Rectangle> holes, panes;
         for (int i = 0; i < b.columns; ++i) {
             const double u = i * kRoomX - start;
-            holes.push_back({u + 0.75, 0, u + 0.75 + kDoor, kDoorHeight});
-            if (b.random.chance(0.35)) panes.push_back({u + 2.6, 0.95, u + 5.2, 2.35});
+            const double door = doorAt(side, u), pane = side == 0 ? u + 2.6 : u + 1.0;
+            holes.push_back({door, 0, door + kDoor, kDoorHeight});
+            if (b.random.chance(0.35)) panes.push_back({pane, 0.95, pane + 2.6, 2.35});
         }
         std::vector<Rectangle> all = holes;
         all.insert(all.end(), panes.begin(), panes.end());
@@ -335,7 +341,7 @@ SceneViews interiorViews(const Layout& layout) {
     for (uint64_t i = 0; i < 16; ++i) {
         const double z = static_cast<double>(i % layout.storeys) * kStorey + 1.65;
         const double room = static_cast<double>(i * layout.columns / 16);
-        const double door = kRoomX * room + 0.75 + kDoor / 2;
+        const double door = doorAt(i % 4 == 3 ? 1 : 0, kRoomX * room) + kDoor / 2;
         switch (i % 4) {
             case 0:
                 views.walk.push_back({{1.0, middle, z}, {length, middle, z - 0.3}});
@@ -348,8 +354,8 @@ SceneViews interiorViews(const Layout& layout) {
                     {{length * 0.6, middle + 0.2, z}, {0.0, middle - 0.3, z - 0.3}});
                 break;
             default:  // in the northern one
-                views.walk.push_back({{door + 0.25, kRoomY + kCorridor + 0.9, z},
-                                      {door + 2.6, kDepth - 0.8, z - 0.6}});
+                views.walk.push_back({{door - 0.25, kRoomY + kCorridor + 0.9, z},
+                                      {door - 2.6, kDepth - 0.8, z - 0.6}});
         }
     }
     const double top = static_cast<double>(layout.storeys) * kStorey;

@@ -248,8 +248,9 @@ void addHallFrame(Site site, double length, double width, double z0, double z1) 
         for (int k = 0; k < webs; ++k) {
             const double y0 = 1 + (width - 2) * k / webs, y1 = 1 + (width - 2) * (k + 1) / webs;
             const bool rises = k % 2 == 0;
-            kit.rod(site.at, {x + 0.015, y0, rises ? eaves + 0.1 : z1 - 0.4},
-                    {x + 0.015, y1, rises ? z1 - 0.4 : eaves + 0.1}, 0.07);
+            const double beside = x + 0.015 + (rises ? 0.0 : 0.011);
+            kit.rod(site.at, {beside, y0, rises ? eaves + 0.1 : z1 - 0.4},
+                    {beside, y1, rises ? z1 - 0.4 : eaves + 0.1}, 0.07);
         }
     }
     kit.beginObject("Crane runway");
