@@ -7,31 +7,60 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace pagoda::viewer {
 namespace {
 
-// A range starts at a whole vertex and a whole index, and gaps are never shorter than this.
+// A range starts at a whole vertex and a whole word, and gaps are never shorter than this.
 constexpr uint64_t kGranuleBytes = 64 * sizeof(GpuVertex);
-constexpr uint64_t kMaxBufferBytes = (uint64_t{4} << 30) - (uint64_t{1} << 20);
+constexpr uint64_t kChunkBytes = uint64_t{32} << 20;
 constexpr size_t kMaxVertices = 65536;  // of a 16-bit index
 
 struct Counts {
-    size_t vertices = 0, indices = 0;
+    size_t vertices = 0, indices = 0, faceNormals = 0;
+    [[nodiscard]] size_t vertexBytes() const { return vertices * sizeof(GpuVertex); }
+    // Rounded up to the words of the normals behind them.
+    [[nodiscard]] size_t indexBytes() const { return (indices * sizeof(uint16_t) + 3) / 4 * 4; }
+    [[nodiscard]] size_t bytes() const {
+        return vertexBytes() + indexBytes() + faceNormals * sizeof(uint32_t);
+    }
 };
 
+bool needsFaceNormals(const ooc::Page& page) {
+    const std::vector<ooc::OctNormal>& normals = page.mesh.normals;
+    return normals.empty() || !page.zippers.empty() ||
+           std::any_of(normals.begin(), normals.end(), [](ooc::OctNormal n) { return n.isNone(); });
+}
+
 Counts countOf(const ooc::Page& page) {
-    Counts counts{page.mesh.positions.size(), page.mesh.indices.size()};
+    Counts counts{page.mesh.positions.size(), page.mesh.indices.size(), 0};
     for (const ooc::Zipper& zipper : page.zippers) {
         counts.vertices += zipper.positions.size();
         counts.indices += zipper.indices.size();
     }
+    if (needsFaceNormals(page)) counts.faceNormals = counts.indices / 3;
     return counts;
 }
 
-uint64_t bytesOf(const Counts& counts) {
-    return counts.vertices * sizeof(GpuVertex) + counts.indices * sizeof(uint16_t);
+// Octahedral, 16 bits each, as GLSL's unpackSnorm2x16 reads it. From integers, so that it depends
+// on neither the eye nor the size of a pixel, as screen-space derivatives would.
+uint32_t faceNormal(const Vec3i& a, const Vec3i& b, const Vec3i& c) {
+    const Vec3d normal = glm::cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
+    const double size = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
+    if (!(size > 0.0)) return 0;
+    double u = normal.x / size, v = normal.y / size;
+    if (normal.z < 0.0) {
+        const double x = u;
+        u = std::copysign(1.0 - std::abs(v), x);
+        v = std::copysign(1.0 - std::abs(x), v);
+    }
+    const auto snorm = [](double value) {
+        return static_cast<uint32_t>(static_cast<uint16_t>(std::lround(value * 32767.0)));
+    };
+    return snorm(u) | snorm(v) << 16;
 }
 
 // Zippers have no colours of their own: the mean of the page's.
@@ -63,27 +92,35 @@ GpuVertex makeVertex(const Vec3i& position, const Vec3i& origin, uint32_t colour
 class Packer {
 public:
     Packer(std::vector<std::byte>& bytes, const Counts& counts, const Vec3i& origin)
-        : vertexCount_(counts.vertices), origin_(origin), bytes_(bytes) {
-        bytes_.resize(bytesOf(counts));
+        : counts_(counts), origin_(origin), bytes_(bytes) {
+        bytes_.assign(counts.bytes(), std::byte{0});
     }
     void addVertex(const Vec3i& position, uint32_t colour, ooc::OctNormal normal) {
-        const GpuVertex vertex = makeVertex(position, origin_, colour, normal);
-        std::memcpy(bytes_.data() + addedVertices_++ * sizeof vertex, &vertex, sizeof vertex);
+        put(addedVertices_++ * sizeof(GpuVertex), makeVertex(position, origin_, colour, normal));
     }
-    void addIndices(const std::vector<uint32_t>& indices, size_t firstVertex) {
-        std::byte* out =
-            bytes_.data() + vertexCount_ * sizeof(GpuVertex) + addedIndices_ * sizeof(uint16_t);
+    void addTriangles(const std::vector<Vec3i>& positions, const std::vector<uint32_t>& indices,
+                      size_t firstVertex) {
         for (const uint32_t index : indices) {
-            const auto small = static_cast<uint16_t>(firstVertex + index);
-            std::memcpy(out, &small, sizeof small);
-            out += sizeof small;
+            put(counts_.vertexBytes() + addedIndices_++ * sizeof(uint16_t),
+                static_cast<uint16_t>(firstVertex + index));
         }
-        addedIndices_ += indices.size();
+        if (counts_.faceNormals == 0) return;
+        const size_t firstNormal = counts_.vertexBytes() + counts_.indexBytes();
+        for (size_t i = 0; i + 2 < indices.size(); i += 3) {
+            put(firstNormal + addedNormals_++ * sizeof(uint32_t),
+                faceNormal(positions[indices[i]], positions[indices[i + 1]],
+                           positions[indices[i + 2]]));
+        }
     }
     [[nodiscard]] size_t addedVertices() const { return addedVertices_; }
 
 private:
-    size_t vertexCount_, addedVertices_ = 0, addedIndices_ = 0;
+    template <typename T>
+    void put(size_t offset, const T& value) {
+        std::memcpy(bytes_.data() + offset, &value, sizeof value);
+    }
+    Counts counts_;
+    size_t addedVertices_ = 0, addedIndices_ = 0, addedNormals_ = 0;
     Vec3i origin_;
     std::vector<std::byte>& bytes_;
 };
@@ -113,13 +150,13 @@ GpuPage pack(const ooc::Page& source, const Counts& counts, std::vector<std::byt
                          mesh.colours.empty() ? mesh.constantColour : mesh.colours[i],
                          mesh.normals.empty() ? ooc::OctNormal{} : mesh.normals[i]);
     }
-    packer.addIndices(mesh.indices, 0);
+    packer.addTriangles(mesh.positions, mesh.indices, 0);
     uint32_t firstTriangle = page.meshTriangles;
     const uint32_t stripColour = source.zippers.empty() ? 0 : meanColour(mesh);
     for (const ooc::Zipper& zipper : source.zippers) {
         const size_t firstVertex = packer.addedVertices();
         for (const Vec3i& position : zipper.positions) packer.addVertex(position, stripColour, {});
-        packer.addIndices(zipper.indices, firstVertex);
+        packer.addTriangles(zipper.positions, zipper.indices, firstVertex);
         const auto count = static_cast<uint32_t>(zipper.indices.size() / 3);
         page.zippers.push_back({zipper.neighbour, firstTriangle, count});
         firstTriangle += count;
@@ -130,38 +167,54 @@ GpuPage pack(const ooc::Page& source, const Counts& counts, std::vector<std::byt
 
 }  // namespace
 
-MeshStore::MeshStore(uint64_t budgetBytes)
-    : arena_(std::min(budgetBytes, kMaxBufferBytes), kGranuleBytes), buffer_(makeBuffer()) {
-    glNamedBufferStorage(buffer_.id(), static_cast<GLsizeiptr>(arena_.capacityBytes()), nullptr,
-                         GL_DYNAMIC_STORAGE_BIT);
-    throwOnGlError("the memory for pages");
+uint64_t MeshStore::sizeBytes(const ooc::Page& page) const {
+    const uint64_t granules = (countOf(page).bytes() + kGranuleBytes - 1) / kGranuleBytes;
+    return std::max(granules, uint64_t{1}) * kGranuleBytes;
 }
 
-uint64_t MeshStore::sizeBytes(const ooc::Page& page) const {
-    return std::max(arena_.roundedUp(bytesOf(countOf(page))), kGranuleBytes);
+std::optional<MeshStore::Place> MeshStore::allocate(uint64_t sizeBytes) {
+    for (size_t chunk = 0; chunk < chunks_.size(); ++chunk) {
+        if (const auto offset = chunks_[chunk].arena.allocate(sizeBytes))
+            return Place{chunk, *offset};
+    }
+    const uint64_t capacity = std::min(kChunkBytes, budgetBytes_ - chunkBytes_);
+    cache::Arena arena(capacity, kGranuleBytes);
+    if (arena.capacityBytes() < sizeBytes) return std::nullopt;
+    GlBuffer buffer = makeBuffer();
+    glNamedBufferStorage(buffer.id(), static_cast<GLsizeiptr>(arena.capacityBytes()), nullptr,
+                         GL_DYNAMIC_STORAGE_BIT);
+    throwOnGlError("pages");
+    chunkBytes_ += arena.capacityBytes();
+    chunks_.push_back({std::move(arena), std::move(buffer)});
+    return Place{chunks_.size() - 1, *chunks_.back().arena.allocate(sizeBytes)};
 }
 
 MeshStore::Upload MeshStore::upload(cache::PageId id, const ooc::Page& page) {
     const Counts counts = countOf(page);
-    if (counts.vertices > kMaxVertices) return Upload::Refused;
-    const auto offset = arena_.allocate(sizeBytes(page));
-    if (!offset) return Upload::NoRoom;
+    const uint64_t neededBytes = sizeBytes(page);
+    if (counts.vertices > kMaxVertices || neededBytes > kChunkBytes) return Upload::Refused;
+    const auto place = allocate(neededBytes);
+    if (!place) return Upload::NoRoom;
     GpuPage packed = pack(page, counts, staging_);
-    packed.baseVertex = static_cast<uint32_t>(*offset / sizeof(GpuVertex));
-    packed.firstIndex =
-        static_cast<uint32_t>((*offset + counts.vertices * sizeof(GpuVertex)) / sizeof(uint16_t));
+    const uint64_t firstIndexByte = place->offset + counts.vertexBytes();
+    packed.chunk = place->chunk;
+    packed.baseVertex = static_cast<uint32_t>(place->offset / sizeof(GpuVertex));
+    packed.firstIndex = static_cast<uint32_t>(firstIndexByte / sizeof(uint16_t));
+    if (counts.faceNormals > 0) {
+        packed.firstNormal = static_cast<uint32_t>((firstIndexByte + counts.indexBytes()) / 4);
+    }
     if (!staging_.empty()) {
-        glNamedBufferSubData(buffer_.id(), static_cast<GLintptr>(*offset),
+        glNamedBufferSubData(buffer(place->chunk), static_cast<GLintptr>(place->offset),
                              static_cast<GLsizeiptr>(staging_.size()), staging_.data());
     }
-    pages_.emplace(id, Entry{*offset, std::move(packed)});
+    pages_.emplace(id, Entry{place->offset, std::move(packed)});
     return Upload::Done;
 }
 
 void MeshStore::drop(cache::PageId id) {
     const auto found = pages_.find(id);
     assert(found != pages_.end());
-    arena_.free(found->second.offset);
+    chunks_[found->second.page.chunk].arena.free(found->second.offset);
     pages_.erase(found);
 }
 

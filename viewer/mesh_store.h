@@ -9,18 +9,22 @@
 #include "viewer/gl_names.h"
 
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
 namespace pagoda::viewer {
 
-// Where a page lies in the buffer, in units that draw calls take.
+// Where a page lies, in units that draw calls take.
 struct GpuPage {
+    size_t chunk = 0;
     Vec3i origin{0};  // lattice point that its vertices are relative to
     uint32_t baseVertex = 0;
     uint32_t firstIndex = 0;  // opaque triangles first, then translucent ones, then zippers
+    uint32_t firstNormal = kNoNormals;  // 32-bit word in the chunk: triangle 0's normal
     uint32_t opaqueTriangles = 0;
     uint32_t meshTriangles = 0;
+    static constexpr uint32_t kNoNormals = UINT32_MAX;
 
     struct Strip {
         uint64_t neighbour = 0;  // NodeId::value
@@ -35,8 +39,8 @@ struct GpuPage {
 
 class MeshStore final : public cache::GpuPages {
 public:
-    // Takes all of `budgetBytes` (below 4 GiB: the limit of a GL buffer here) at once.
-    explicit MeshStore(uint64_t budgetBytes);
+    // Chunks together never exceed `budgetBytes`; the last one is what the others leave.
+    explicit MeshStore(uint64_t budgetBytes) : budgetBytes_(budgetBytes) {}
 
     uint64_t sizeBytes(const ooc::Page& page) const override;
     Upload upload(cache::PageId id, const ooc::Page& page) override;
@@ -44,17 +48,25 @@ public:
 
     // The page was uploaded (asserted). Valid until it is dropped.
     [[nodiscard]] const GpuPage& page(cache::PageId id) const;
-    [[nodiscard]] GlId buffer() const noexcept { return buffer_.id(); }
-    // What is left for pages: the budget rounded down.
-    [[nodiscard]] uint64_t capacityBytes() const noexcept { return arena_.capacityBytes(); }
+    [[nodiscard]] GlId buffer(size_t chunk) const { return chunks_[chunk].buffer.id(); }
 
 private:
     struct Entry {
         uint64_t offset = 0;
         GpuPage page;
     };
-    cache::Arena arena_;
-    GlBuffer buffer_;
+    struct Chunk {
+        cache::Arena arena;
+        GlBuffer buffer;
+    };
+    struct Place {
+        size_t chunk;
+        uint64_t offset;
+    };
+    [[nodiscard]] std::optional<Place> allocate(uint64_t sizeBytes);
+
+    uint64_t budgetBytes_, chunkBytes_ = 0;
+    std::vector<Chunk> chunks_;
     std::unordered_map<cache::PageId, Entry, cache::PageIdHash> pages_;
     std::vector<std::byte> staging_;
 };

@@ -21,7 +21,6 @@ NodeDrawer::NodeDrawer(const MeshStore& store)
       commandBuffer_(makeBuffer()),
       instanceBuffer_(makeBuffer()),
       sortedBuffer_(makeBuffer()) {
-    glVertexArrayVertexBuffer(array_.id(), 0, store.buffer(), 0, sizeof(GpuVertex));
     glVertexArrayVertexBuffer(array_.id(), 1, instanceBuffer_.id(), 0, sizeof(DrawInstance));
 }
 
@@ -36,10 +35,10 @@ uint64_t NodeDrawer::drawOpaque(std::span<const DrawItem> items) {
     uint64_t triangles = 0;
     for (const DrawItem& item : items) {
         const GpuPage& page = store_.page(item.page);
-        add(page, page.firstIndex, page.opaqueTriangles, item.nodeOrdinal, 0);
+        add(page, {page.firstIndex, page.opaqueTriangles, 0, page.firstNormal}, item.nodeOrdinal);
         triangles += page.opaqueTriangles;
     }
-    submit(store_.buffer());
+    submit();
     return triangles;
 }
 
@@ -51,13 +50,17 @@ uint64_t NodeDrawer::drawZippers(std::span<const DrawItem> items,
         const GpuPage& page = store_.page(item.page);
         for (const GpuPage::Strip& strip : page.zippers) {
             if (isRefined({item.page.database, ooc::NodeId{strip.neighbour}})) continue;
-            add(page, page.firstIndex + 3 * strip.firstTriangle, strip.triangleCount,
-                item.nodeOrdinal, strip.firstTriangle);
+            const uint32_t firstNormal =
+                page.firstNormal + strip.firstTriangle;  // pages with strips have them
+            add(page,
+                {page.firstIndex + 3 * strip.firstTriangle, strip.triangleCount,
+                 strip.firstTriangle, firstNormal},
+                item.nodeOrdinal);
             triangles += strip.triangleCount;
             ++stripCount;
         }
     }
-    submit(store_.buffer());
+    submit();
     return triangles;
 }
 
@@ -67,7 +70,8 @@ uint64_t NodeDrawer::drawTranslucent(std::span<const DrawItem> items) {
     for (const DrawItem& item : items) {
         const GpuPage& page = store_.page(item.page);
         const auto count = static_cast<uint32_t>(page.translucentCentroids.size());
-        add(page, static_cast<uint32_t>(sortedIndices_.size()), count, item.nodeOrdinal, 0);
+        add(page, {static_cast<uint32_t>(sortedIndices_.size()), count, 0, GpuPage::kNoNormals},
+            item.nodeOrdinal);
         appendSorted(page);
         triangles += count;
     }
@@ -90,25 +94,34 @@ void NodeDrawer::appendSorted(const GpuPage& page) {
     }
 }
 
-void NodeDrawer::add(const GpuPage& page, uint32_t firstIndex, uint32_t triangleCount,
-                     uint32_t nodeOrdinal, uint32_t firstTriangle) {
-    if (triangleCount == 0) return;
+void NodeDrawer::add(const GpuPage& page, const Range& range, uint32_t nodeOrdinal) {
+    if (range.triangleCount == 0) return;
     const auto instance = static_cast<uint32_t>(instances_.size());
-    commands_.push_back(
-        {3 * triangleCount, 1, firstIndex, static_cast<int32_t>(page.baseVertex), instance});
-    instances_.push_back({view_.offsetOf(page.origin), nodeOrdinal, firstTriangle});
+    commands_.push_back({3 * range.triangleCount, 1, range.firstIndex,
+                         static_cast<int32_t>(page.baseVertex), instance});
+    instances_.push_back(
+        {view_.offsetOf(page.origin), nodeOrdinal, range.firstTriangle, range.firstNormal});
+    chunks_.push_back(page.chunk);
 }
 
 void NodeDrawer::submit(GlId indexBuffer) {
     if (!commands_.empty()) {
         fill(commandBuffer_.id(), commands_);
         fill(instanceBuffer_.id(), instances_);
-        glVertexArrayElementBuffer(array_.id(), indexBuffer);
-        glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_SHORT, nullptr,
-                                    static_cast<GLsizei>(commands_.size()), sizeof(Command));
+    }
+    for (size_t begin = 0, end = 0; begin < commands_.size(); begin = end) {
+        while (end < commands_.size() && chunks_[end] == chunks_[begin]) ++end;
+        const GlId chunk = store_.buffer(chunks_[begin]);
+        glVertexArrayVertexBuffer(array_.id(), 0, chunk, 0, sizeof(GpuVertex));
+        glVertexArrayElementBuffer(array_.id(), indexBuffer != 0 ? indexBuffer : chunk);
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kNormalsBinding, chunk);
+        glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_SHORT,
+                                    reinterpret_cast<const void*>(begin * sizeof(Command)),
+                                    static_cast<GLsizei>(end - begin), sizeof(Command));
     }
     commands_.clear();
     instances_.clear();
+    chunks_.clear();
 }
 
 }  // namespace pagoda::viewer

@@ -1,5 +1,6 @@
-// node_drawer.h: draws batches of resident nodes, each batch with one multi-draw call.
-// Between bind() and the last draw call no other GL state may change. Render thread only.
+// node_drawer.h: draws batches of resident nodes, each run of nodes in one chunk with one
+// multi-draw call. Between bind() and the last draw call no other GL state may change. Render
+// thread only.
 #pragma once
 
 #include "hlod/view/node_tree.h"
@@ -40,9 +41,12 @@ private:
         int32_t baseVertex;
         uint32_t baseInstance;
     };
-    void add(const GpuPage& page, uint32_t firstIndex, uint32_t triangleCount, uint32_t nodeOrdinal,
-             uint32_t firstTriangle);
-    void submit(GlId indexBuffer);
+    struct Range {
+        uint32_t firstIndex, triangleCount, firstTriangle, firstNormal;
+    };
+    void add(const GpuPage& page, const Range& range, uint32_t nodeOrdinal);
+    // Draws what was added; indices come from the chunk, or from `indexBuffer` when it is not 0.
+    void submit(GlId indexBuffer = 0);
     void appendSorted(const GpuPage& page);
 
     const MeshStore& store_;
@@ -51,6 +55,7 @@ private:
     GlBuffer commandBuffer_, instanceBuffer_, sortedBuffer_;
     std::vector<Command> commands_;
     std::vector<DrawInstance> instances_;
+    std::vector<size_t> chunks_;  // of each command
     std::vector<uint16_t> sortedIndices_;
     std::vector<std::pair<float, uint32_t>> order_;
 };

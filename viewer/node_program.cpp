@@ -15,7 +15,7 @@ layout(location = 0) in ivec3 positionSteps;   // from the page's origin
 layout(location = 1) in vec4 colourSrgb;
 layout(location = 2) in ivec2 normalOct;       // v = -128: none
 layout(location = 3) in ivec3 offsetSteps;     // of the page's origin from the camera's cell
-layout(location = 4) in uvec2 ordinalAndFirst;
+layout(location = 4) in uvec3 ordinalAndFirsts;
 
 layout(location = 0) uniform vec3 eye;         // from the camera's cell, in steps
 layout(location = 1) uniform vec3 rowX;
@@ -27,7 +27,7 @@ invariant gl_Position;
 layout(location = 0) out vec3 fromEye;
 layout(location = 1) out vec3 normal;          // zero: none
 layout(location = 2) out vec4 albedo;          // linear
-layout(location = 3) flat out uvec2 ids;
+layout(location = 3) flat out uvec3 ids;      // node ordinal, first triangle, first normal
 
 vec3 decodeNormal(ivec2 oct) {
     if (oct.y == -128) return vec3(0.0);
@@ -52,7 +52,7 @@ void main() {
     fromEye = relative;
     normal = decodeNormal(normalOct);
     albedo = vec4(linearFromSrgb(colourSrgb.rgb), colourSrgb.a);
-    ids = ordinalAndFirst;
+    ids = ordinalAndFirsts;
 }
 )";
 
@@ -66,17 +66,29 @@ layout(location = 6) uniform vec3 worldUp;
 layout(location = 0) in vec3 fromEye;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 albedo;
-layout(location = 3) flat in uvec2 ids;
+layout(location = 3) flat in uvec3 ids;
 
 layout(location = 0) out vec4 colour;  // linear: the framebuffer encodes sRGB
 layout(location = 1) out uint nodeOrdinal;
 layout(location = 2) out uint triangle;
 
+layout(std430, binding = 0) readonly buffer Chunk { uint words[]; };
+
+vec3 flatNormal() {
+    // Translucent triangles are drawn in sorted order: theirs come from what the screen shows.
+    if (ids.z == 0xFFFFFFFFu) return cross(dFdx(fromEye), dFdy(fromEye));
+    vec2 square = unpackSnorm2x16(words[ids.z + uint(gl_PrimitiveID)]);
+    vec3 n = vec3(square, 1.0 - abs(square.x) - abs(square.y));
+    vec2 signs = vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
+    if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * signs;
+    return n;
+}
+
 void main() {
     vec3 towardsEye = -normalize(fromEye);
     vec3 n = normal;
     // A triangle with a corner that has no normal is flat as a whole: interpolation shortens the rest.
-    if (dot(n, n) < 0.25) n = cross(dFdx(fromEye), dFdy(fromEye));
+    if (dot(n, n) < 0.25) n = flatNormal();
     float size = length(n);
     n = size > 0.0 ? n / size : towardsEye;
     if (dot(n, towardsEye) < 0.0) n = -n;
@@ -157,7 +169,7 @@ GlVertexArray makeNodeVertexArray() {
     glVertexArrayAttribFormat(id, 1, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(GpuVertex, colour));
     glVertexArrayAttribIFormat(id, 2, 2, GL_BYTE, offsetof(GpuVertex, normalU));
     glVertexArrayAttribIFormat(id, 3, 3, GL_INT, offsetof(DrawInstance, offset));
-    glVertexArrayAttribIFormat(id, 4, 2, GL_UNSIGNED_INT, offsetof(DrawInstance, nodeOrdinal));
+    glVertexArrayAttribIFormat(id, 4, 3, GL_UNSIGNED_INT, offsetof(DrawInstance, nodeOrdinal));
     for (GLuint attribute = 0; attribute < 5; ++attribute) {
         glEnableVertexArrayAttrib(id, attribute);
         glVertexArrayAttribBinding(id, attribute, attribute < 3 ? 0 : 1);

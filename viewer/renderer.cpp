@@ -16,6 +16,7 @@ namespace {
 constexpr double kTauGrowth = 1.5;
 constexpr double kMinRaisedTauPx = 0.25;
 constexpr double kMaxTauPx = 1e7;
+constexpr uint64_t kMinGpuBytes = uint64_t{1} << 20;
 
 class Stopwatch {
 public:
@@ -63,8 +64,8 @@ private:
 };
 
 Renderer::Renderer(const ooc::Lattice& lattice, cache::PageSource& source, Budgets budgets)
-    : store_(std::max(budgets.gpuBytes, uint64_t{1} << 20)),
-      residency_({budgets.hostBytes, store_.capacityBytes()}, source, store_),
+    : store_(std::max(budgets.gpuBytes, kMinGpuBytes)),
+      residency_({budgets.hostBytes, std::max(budgets.gpuBytes, kMinGpuBytes)}, source, store_),
       index_(source),
       tree_(lattice, index_),
       drawer_(store_) {
@@ -232,6 +233,9 @@ void Renderer::drawInBatches(std::span<const hlod::Node> nodes, std::span<const 
         cache::PageState state = residency_.want(request);
         if (state == cache::PageState::NoRoom) {
             flush();
+            // Ranges of the drawn pages are about to be written again. llvmpipe 22.3 does not order
+            // that behind shaders that still read normals from them, as GL says it should.
+            glFinish();
             residency_.unpinAll();
             state = residency_.want(request);
         }

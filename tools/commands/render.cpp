@@ -183,7 +183,7 @@ void addDetailOptions(CLI::App& command, Arguments& arguments) {
     command.add_option("--host-budget", arguments.hostBudget, "Bytes for decoded pages")
         ->capture_default_str();
     command
-        .add_option("--gpu-budget", arguments.gpuBudget, "Bytes for uploaded pages (1MiB to 4GiB)")
+        .add_option("--gpu-budget", arguments.gpuBudget, "Bytes for uploaded pages (1MiB or more)")
         ->capture_default_str();
 }
 
