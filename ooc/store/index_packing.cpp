@@ -23,6 +23,12 @@ public:
         byId_.reserve(nodes.size());
         for (uint32_t i = 0; i < nodes.size(); ++i) byId_.emplace_back(nodes[i].id, i);
         std::sort(byId_.begin(), byId_.end());
+        subtreeNodes_.assign(nodes.size(), 1);
+        for (size_t i = byId_.size(); i-- > 1;) {  // what is below a node has greater ids
+            const auto& [id, number] = byId_[i];
+            const auto parent = find(id.parent());
+            if (parent != byId_.end()) subtreeNodes_[parent->second] += subtreeNodes_[number];
+        }
     }
 
     std::vector<std::vector<uint32_t>> run() {
@@ -47,9 +53,17 @@ private:
         do {
             fillSubtree(families[next], beyond);
             ++next;
-        } while (next < families.size() && fits(families[next]));
+        } while (next < families.size() && isWorthAdding(families[next]));
         if (!beyond.empty()) waiting_.push_back(std::move(beyond));
         return next;
+    }
+
+    // A subtree cut near a full block's end would leave crumbs for a block of their own.
+    [[nodiscard]] bool isWorthAdding(const Family& family) const {
+        size_t nodes = 0;
+        for (uint32_t i = 0; i < family.count; ++i) nodes += subtreeNodes_[family.first + i];
+        const size_t used = blocks_.back().size();
+        return used + nodes <= maxNodesPerBlock_ || (used < maxNodesPerBlock_ / 2 && fits(family));
     }
 
     void fillSubtree(const Family& top, std::vector<Family>& beyond) {
@@ -97,9 +111,16 @@ private:
         return {parent, first->second, count};
     }
 
+    using ById = std::vector<std::pair<NodeId, uint32_t>>;
+    [[nodiscard]] ById::const_iterator find(NodeId id) const {
+        const auto place = std::lower_bound(byId_.begin(), byId_.end(), std::pair(id, uint32_t{0}));
+        return place != byId_.end() && place->first == id ? place : byId_.end();
+    }
+
     std::vector<NodeRecord>& nodes_;
     uint32_t maxNodesPerBlock_;
-    std::vector<std::pair<NodeId, uint32_t>> byId_;
+    ById byId_;
+    std::vector<size_t> subtreeNodes_;         // a node and all below it
     std::deque<std::vector<Family>> waiting_;  // each: what one block had no room for
     std::vector<std::vector<uint32_t>> blocks_;
     size_t placed_ = 0;
