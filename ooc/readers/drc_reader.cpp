@@ -101,7 +101,7 @@ DrcReader::DrcReader(const std::filesystem::path& path, const ReaderOptions& opt
     announced_ = *announced;
     if (!announced_.isMesh) announced_.faces = 0;
     if (announced_.faces > options.maxTriangles) {
-        source_.fail("",
+        source_.fail("byte 0",
                      "holds " + std::to_string(announced_.faces) +
                          " triangles, over the limit of " + std::to_string(options.maxTriangles),
                      "raise --max-triangles if it is meant");
@@ -112,7 +112,7 @@ std::vector<std::byte> DrcReader::readFile() const {
     constexpr uint64_t kMiB = uint64_t{1} << 20;
     const uint64_t neededBytes = source_.sizeBytes() + announced_.decodedBytes();
     if (neededBytes > options_.memoryBytes) {
-        source_.fail("",
+        source_.fail("byte 0",
                      "needs " + std::to_string(neededBytes / kMiB + 1) +
                          " MiB of memory to decode, over the limit of " +
                          std::to_string(options_.memoryBytes / kMiB) + " MiB",

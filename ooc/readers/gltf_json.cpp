@@ -3,29 +3,14 @@
 // animations, cameras, unknown extensions) is left behind, so nesting is bounded too.
 #include "ooc/base/error.h"
 #include "ooc/readers/gltf_document.h"
+#include "ooc/readers/gltf_fields.h"
 
-#include <nlohmann/json.hpp>
-
-#include <array>
-#include <cmath>
-#include <limits>
+#include <algorithm>
 #include <span>
 #include <string_view>
 
 namespace pagoda::ooc::gltf {
 namespace {
-
-using Json = nlohmann::json;
-
-enum class Kind : uint8_t { Text, Bool, Number, Size, Index, Numbers, Indices, IndexMap };
-
-struct Field {
-    const char* key;
-    Kind kind;
-    const char* section = "";  // Index, Indices, IndexMap: the array that they point into
-    size_t length = 0;         // Numbers: how many
-    bool isRequired = false;
-};
 
 constexpr Field kAsset[] = {{"version", Kind::Text, "", 0, true},
                             {"minVersion", Kind::Text},
@@ -97,29 +82,14 @@ constexpr std::string_view kUnderstood[] = {"KHR_draco_mesh_compression",
 constexpr std::string_view kHarmlessPrefixes[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_",
                                                   "MSFT_texture_",  "KHR_lights_",  "EXT_lights_"};
 
-constexpr uint64_t kMaxExactInteger = uint64_t{1} << 53;  // as JSON is read elsewhere
-
-class Checker {
+class Checker : private JsonFields {
 public:
-    Checker(const SourceFile& source, Json root, Extras& extras)
-        : source_(source), root_(std::move(root)), extras_(extras) {}
+    Checker(const SourceFile& source, const Json& root, Extras& extras)
+        : JsonFields(source, root), extras_(extras) {}
 
     std::string run();
 
 private:
-    using Where = std::string;
-
-    [[noreturn]] void refuse(const Where& where, const std::string& what) const {
-        source_.fail(where, what, kValidate);
-    }
-    const Json& section(const char* name) const;
-    size_t sizeOf(const char* name) const;
-    const Json* member(const Json& object, const char* key, const Where& where) const;
-    const Json* extension(const Json& object, const char* name, const Where& where) const;
-
-    void checkIndex(const Json& value, const char* section, const Where& where) const;
-    void checkField(const Json& value, const Field& field, const Where& where) const;
-    Json copy(const Json& from, std::span<const Field> fields, const Where& where) const;
     template <typename CopyOne>
     void copySection(const char* name, CopyOne&& copyOne);
 
@@ -137,106 +107,9 @@ private:
     void readBuffers();
     void readImages();
 
-    const SourceFile& source_;
-    Json root_;
     Extras& extras_;
     Json out_ = Json::object();
 };
-
-const Json& Checker::section(const char* name) const {
-    static const Json kNothing = Json::array();
-    const auto found = root_.find(name);
-    if (found == root_.end()) return kNothing;
-    if (!found->is_array()) refuse(name, "is not an array");
-    return *found;
-}
-
-size_t Checker::sizeOf(const char* name) const {
-    return section(name).size();
-}
-
-const Json* Checker::member(const Json& object, const char* key, const Where& where) const {
-    const auto found = object.find(key);
-    if (found == object.end()) return nullptr;
-    if (!found->is_object()) {
-        refuse(where.empty() ? Where(key) : where + "." + key, "is not an object");
-    }
-    return &*found;
-}
-
-const Json* Checker::extension(const Json& object, const char* name, const Where& where) const {
-    const Json* extensions = member(object, "extensions", where);
-    return extensions == nullptr ? nullptr : member(*extensions, name, where + ".extensions");
-}
-
-void Checker::checkIndex(const Json& value, const char* target, const Where& where) const {
-    if (!value.is_number_unsigned()) refuse(where, "is not a whole number from 0");
-    const uint64_t index = value.get<uint64_t>();
-    const uint64_t count =
-        *target == '\0' ? uint64_t{std::numeric_limits<int>::max()} + 1 : uint64_t{sizeOf(target)};
-    if (index < count) return;
-    refuse(where,
-           "is " + std::to_string(index) +
-               (*target == '\0' ? std::string(", too large")
-                                : ", but there are " + std::to_string(count) + " " + target));
-}
-
-void Checker::checkField(const Json& value, const Field& field, const Where& where) const {
-    switch (field.kind) {
-        case Kind::Text:
-            if (!value.is_string()) refuse(where, "is not a string");
-            return;
-        case Kind::Bool:
-            if (!value.is_boolean()) refuse(where, "is not true or false");
-            return;
-        case Kind::Number:
-            if (!value.is_number()) refuse(where, "is not a number");
-            return;
-        case Kind::Size:
-            if (!value.is_number_unsigned() || value.get<uint64_t>() > kMaxExactInteger) {
-                refuse(where, "is not a whole number from 0 to 2^53");
-            }
-            return;
-        case Kind::Index:
-            checkIndex(value, field.section, where);
-            return;
-        case Kind::Numbers:
-            if (!value.is_array() || value.size() != field.length) {
-                refuse(where, "is not an array of " + std::to_string(field.length) + " numbers");
-            }
-            for (const Json& item : value) {
-                if (!item.is_number()) refuse(where, "holds something that is not a number");
-            }
-            return;
-        case Kind::Indices:
-            if (!value.is_array()) refuse(where, "is not an array");
-            for (size_t i = 0; i < value.size(); ++i) {
-                checkIndex(value[i], field.section, place(where.c_str(), i));
-            }
-            return;
-        case Kind::IndexMap:
-            if (!value.is_object()) refuse(where, "is not an object");
-            for (const auto& [key, item] : value.items()) {
-                checkIndex(item, field.section, where + "." + key);
-            }
-            return;
-    }
-}
-
-Json Checker::copy(const Json& from, std::span<const Field> fields, const Where& where) const {
-    if (!from.is_object()) refuse(where, "is not an object");
-    Json to = Json::object();
-    for (const Field& field : fields) {
-        const auto found = from.find(field.key);
-        if (found == from.end()) {
-            if (field.isRequired) refuse(where, std::string("has no \"") + field.key + "\"");
-            continue;
-        }
-        checkField(*found, field, where + "." + field.key);
-        to[field.key] = *found;
-    }
-    return to;
-}
 
 template <typename CopyOne>
 void Checker::copySection(const char* name, CopyOne&& copyOne) {
@@ -476,7 +349,8 @@ std::string Checker::run() {
 
 std::string checkJson(const SourceFile& source, std::string_view text, Extras& extras) {
     try {
-        return Checker(source, Json::parse(text), extras).run();
+        const Json root = Json::parse(text);
+        return Checker(source, root, extras).run();
     } catch (const Json::parse_error& failure) {
         source.fail("byte " + std::to_string(failure.byte) + " of the JSON", "not JSON", kValidate);
     } catch (const Json::exception& failure) {  // numbers beyond the range of a double

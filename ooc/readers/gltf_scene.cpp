@@ -134,7 +134,7 @@ Scene planScene(const SourceFile& source, const Document& document, uint64_t max
     }
     if (triangles > static_cast<long double>(maxTriangles)) {
         constexpr long double kMost = 1e18L;
-        source.fail("",
+        source.fail("scene",
                     "draws " + std::to_string(static_cast<uint64_t>(std::min(triangles, kMost))) +
                         " triangles with all instances, over the limit of " +
                         std::to_string(maxTriangles),
