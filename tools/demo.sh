@@ -30,12 +30,12 @@ picture() {
     "$pagoda" render out/plant.pagoda -o "out/$1.png" --size 1280x720 --tau 1 --camera "$2"
 }
 say "Pictures"
-picture plant-outside '{"eye":[190,-70,30],"target":[85,30,18],"fovy":50}'
-picture plant-above '{"eye":[-60,120,120],"target":[80,30,0],"fovy":50}'
+picture site '{"eye":[-75,-105,55],"target":[65,35,15],"fovy":50}'
+picture boiler-house '{"eye":[190,-70,30],"target":[85,30,18],"fovy":50}'
 picture turbine-hall '{"eye":[3,3,10.2],"target":[50,20,9],"fovy":60}'
-picture boiler-room '{"eye":[88.57,6.3,1.7],"target":[124.1,6.3,1.3],"fovy":65}'
+picture machine-room '{"eye":[90.5,6.6,9.6],"target":[81,11.5,9.2],"fovy":70}'
 
 say "Done. Look at:"
-for name in plant-outside plant-above turbine-hall boiler-room; do
+for name in site boiler-house turbine-hall machine-room; do
     echo "  $PWD/out/$name.png"
 done

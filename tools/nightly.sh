@@ -7,7 +7,7 @@
 # PAGODA_TEST_DATA  folder of real models (default ../shared/data); required
 # Exit code 1 when a part failed; the others have run all the same.
 set -uo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/.." || exit 1
 fuzz_seconds=${1:-600}
 data=$(realpath -m "${PAGODA_TEST_DATA:-../shared/data}")
 [ -f "$data/stats.json" ] || { echo "nightly.sh: no models in $data" >&2; exit 1; }
@@ -54,7 +54,7 @@ PY
 
 benches() {
     local program
-    for program in build-ci/tests/bench/pagoda_bench*; do
+    for program in build-ci/tests/benchmarks/pagoda_*_benchmark; do
         [ -x "$program" ] || { echo "no benchmarks in this tree"; return 0; }
         "$program" --benchmark_repetitions=5 --benchmark_report_aggregates_only=true || return 1
     done
