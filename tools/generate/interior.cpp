@@ -162,12 +162,13 @@ void addPartitions(Builder& b, const Frame& at, const std::string& name) {
 struct Room {
     Furnisher& f;
     Frame at;
+    double left, right;  // from its middle to the side walls; the building's own are thicker
 };
 
-constexpr double kSide = kRoomX / 2 - kInner / 2, kBack = kRoomY - kInner / 2;
+constexpr double kBack = kRoomY - kInner / 2;
 
 void addSidePictures(Room& room) {
-    const Frame left = room.at.moved({-kSide, 2.6, 1.35}).quarterTurned(3);
+    const Frame left = room.at.moved({-room.left, 2.6, 1.35}).quarterTurned(3);
     room.f.picture(left, room.f.random.range(0.5, 1.0), room.f.random.range(0.5, 0.8));
 }
 
@@ -179,7 +180,7 @@ void furnishOffice(Room& room) {
         f.officeChair(desk.moved({f.random.range(-0.15, 0.15), 0.85, 0})
                           .turned(3.14 + f.random.range(-0.5, 0.5)));
     }
-    f.shelf(room.at.moved({kSide, 4.6, 0}).quarterTurned(1), f.random.range(1.6, 2.2),
+    f.shelf(room.at.moved({room.right, 4.6, 0}).quarterTurned(1), f.random.range(1.6, 2.2),
             f.random.range(1.9, 2.4));
     f.plant(room.at.moved({-2.5, 0.75, 0}));
     addSidePictures(room);
@@ -197,7 +198,7 @@ void furnishMeeting(Room& room) {
             middle.moved({x, width / 2 + 0.35, 0}).turned(3.14 + f.random.range(-0.4, 0.4)));
         f.officeChair(middle.moved({x, -width / 2 - 0.35, 0}).turned(f.random.range(-0.4, 0.4)));
     }
-    f.whiteboard(room.at.moved({kSide, 2.9, 0}).quarterTurned(1), f.random.range(1.8, 2.6));
+    f.whiteboard(room.at.moved({room.right, 2.9, 0}).quarterTurned(1), f.random.range(1.8, 2.6));
     f.pendantLamps(room.at.moved({0.25, 2.9, kClear}).quarterTurned(1), 3, 1.0, 1.15);
     f.plant(room.at.moved({2.5, 5.7, 0}));
     addSidePictures(room);
@@ -211,14 +212,14 @@ void furnishLibrary(Room& room) {
         f.shelf(room.at.moved({0.55, y - 0.006, 0}).quarterTurned(2), 3.6,
                 f.random.range(1.9, 2.3));
     }
-    f.shelf(room.at.moved({-kSide, 2.8, 0}).quarterTurned(3), 2.8, f.random.range(2.0, 2.5));
+    f.shelf(room.at.moved({-room.left, 2.8, 0}).quarterTurned(3), 2.8, f.random.range(2.0, 2.5));
     f.floorLamp(room.at.moved({2.65, 0.65, 0}));
     f.woodenChair(room.at.moved({-2.4, 0.7, 0}).turned(-0.8), f.colours.oak);
 }
 
 void furnishLounge(Room& room) {
     Furnisher& f = room.f;
-    f.sofa(room.at.moved({kSide - 0.55, 2.3, 0}).quarterTurned(1), f.random.range(1.9, 2.4));
+    f.sofa(room.at.moved({room.right - 0.55, 2.3, 0}).quarterTurned(1), f.random.range(1.9, 2.4));
     f.sofa(room.at.moved({0.5, 1.0, 0}), f.random.range(0.95, 1.1));
     f.roundTable(room.at.moved({1.15, 2.4, 0}), 0.5);
     f.roundTable(room.at.moved({-1.4, 3.4, 0}), 0.55);
@@ -236,25 +237,25 @@ void furnishLounge(Room& room) {
 void furnishStore(Room& room) {
     Furnisher& f = room.f;
     for (int i = 0; i < 3; ++i) f.crates(room.at.moved({0.4, 1.0 + 1.5 * i, 0}), 3.6);
-    f.crates(room.at.moved({kSide, 3.0, 0}).quarterTurned(1), 3.4);
-    f.crates(room.at.moved({-kSide, 2.6, 0}).quarterTurned(3), 3.0);
+    f.crates(room.at.moved({room.right, 3.0, 0}).quarterTurned(1), 3.4);
+    f.crates(room.at.moved({-room.left, 2.6, 0}).quarterTurned(3), 3.0);
 }
 
-void addRoom(Builder& b, const Frame& at, const std::string& name) {
+void addRoom(Builder& b, const Frame& at, double left, double right, const std::string& name) {
     SceneKit& kit = b.kit;
     Furnisher f(kit, b.colours, b.random.fork(b.random.next()), name);
-    Room room{f, at};
+    Room room{f, at, left, right};
     kit.beginGroup("Room " + name);
     kit.beginObject("Carpet " + name);
     kit.paint(b.colours.carpets[f.random.integer(0, 3)]);
-    kit.box(at, {-kSide + 0.05, kOuter / 2 + 0.05, -0.01}, {kSide - 0.05, kBack - 0.05, 0.006});
+    kit.box(at, {-left + 0.05, kOuter / 2 + 0.05, -0.01}, {right - 0.05, kBack - 0.05, 0.006});
     kit.beginObject("Skirting " + name);
     kit.paint(b.colours.white);
-    for (const double x : {-kSide, kSide}) {
+    for (const double x : {-left, right}) {
         kit.box(at, {x - 0.013, kOuter / 2 + 0.02, -0.011}, {x + 0.013, kBack - 0.02, 0.08});
     }
-    kit.box(at, {-kSide + 0.014, kOuter / 2 - 0.013, -0.011},
-            {kSide - 0.014, kOuter / 2 + 0.013, 0.081});
+    kit.box(at, {-left + 0.014, kOuter / 2 - 0.013, -0.011},
+            {right - 0.014, kOuter / 2 + 0.013, 0.081});
     f.radiator(at.moved({0, kOuter / 2, 0}), f.random.range(1.2, 2.0));
     for (const double sign : {-1.0, 1.0}) {
         f.curtain(at.moved({sign * 1.95 - 0.4, kOuter / 2 + 0.12, 0.12}), f.random.range(0.7, 0.9),
@@ -305,8 +306,11 @@ void addStorey(Builder& b, const Frame& at, const std::string& name) {
     addCorridor(b, at, name);
     for (int i = 0; i < b.columns; ++i) {
         const double x = kRoomX * (i + 0.5);
-        addRoom(b, at.moved({x, 0, 0}), fmt::format("{}S{}", name, i + 1));
-        addRoom(b, at.moved({x, kDepth, 0}).quarterTurned(2), fmt::format("{}N{}", name, i + 1));
+        const double inner = kRoomX / 2 - kInner / 2, outer = kRoomX / 2 - kOuter / 2;
+        const double west = i == 0 ? outer : inner, east = i + 1 == b.columns ? outer : inner;
+        addRoom(b, at.moved({x, 0, 0}), west, east, fmt::format("{}S{}", name, i + 1));
+        addRoom(b, at.moved({x, kDepth, 0}).quarterTurned(2), east, west,
+                fmt::format("{}N{}", name, i + 1));
     }
     b.kit.endGroup();
 }

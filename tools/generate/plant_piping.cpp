@@ -10,6 +10,8 @@ namespace pagoda::tools {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
+// What runs from wall to wall ends inside the walls, just short of the next room's.
+constexpr double kEnd = 0.004;
 
 struct Pipe {
     double y, radius;
@@ -19,7 +21,7 @@ struct Pipe {
 
 // From wall to wall, or down into the floor, or up to the other tier on the way.
 std::vector<Vec3d> pipePath(const RoomSpace& room, const Pipe& pipe, Random& random) {
-    const double end = room.sizeX + 0.07, start = -0.07;
+    const double end = room.sizeX - kEnd, start = kEnd;
     const double turn = random.range(0.12, 0.4) * room.sizeX;
     // Only beside the aisle is the floor free of equipment.
     const bool canDrop = std::abs(pipe.y - room.sizeY / 2) < 1.75;
@@ -159,7 +161,7 @@ void addCableTrays(RoomSpace& room, const std::string& tag) {
         const double z = z0 + random.range(0.0, 0.2), w = 0.55;
         kit.paint(room.colours.galvanised);
         for (const double side : {y, y + w}) {
-            kit.box(room.at, {-0.06, side - 0.004, z}, {room.sizeX + 0.06, side + 0.004, z + 0.09});
+            kit.box(room.at, {kEnd, side - 0.004, z}, {room.sizeX - kEnd, side + 0.004, z + 0.09});
         }
         const int rungs = static_cast<int>(room.sizeX / 0.3);
         for (int i = 0; i < rungs; ++i) {
@@ -177,7 +179,7 @@ void addCableTrays(RoomSpace& room, const std::string& tag) {
             const int bends = 3;
             for (int k = 0; k <= bends; ++k) {
                 path.emplace_back(
-                    std::lerp(-0.06, room.sizeX + 0.06, static_cast<double>(k) / bends),
+                    std::lerp(kEnd, room.sizeX - kEnd, static_cast<double>(k) / bends),
                     cy + random.range(-0.012, 0.012),
                     z + 0.026 + radius + random.range(0.0, 0.008));
             }
@@ -195,7 +197,7 @@ void addDucts(RoomSpace& room, const std::string& tag) {
     const double y = room.sizeY / 2 - w / 2 + random.range(-0.3, 0.3), z = room.height - h - 0.35;
     const int pieces = std::max(2, static_cast<int>(room.sizeX / 1.5));
     const double piece = room.sizeX / pieces;
-    kit.box(room.at, {-0.065, y, z}, {room.sizeX + 0.065, y + w, z + h});
+    kit.box(room.at, {kEnd, y, z}, {room.sizeX - kEnd, y + w, z + h});
     for (int i = 0; i < pieces; ++i) {
         const double x = piece * (i + 0.5);
         kit.box(room.at, {x - 0.02, y - 0.035, z - 0.035},

@@ -154,12 +154,16 @@ void SceneKit::tube(const Frame& at, std::span<const Vec3d> path, double radius,
     for (size_t i = 1; i + 1 < path.size(); ++i) {
         const Vec3d before = towards(i - 1, i), after = towards(i, i + 1);
         const double angle = std::acos(std::clamp(glm::dot(before, after), -1.0, 1.0));
+        if (angle < 0.02) {  // hardly a corner
+            steps.push_back({path[i], glm::normalize(before + after)});
+            continue;
+        }
         const double room = 0.45 * std::min(glm::distance(path[i - 1], path[i]),
                                             glm::distance(path[i], path[i + 1]));
         const double reach = std::min(bend * std::tan(angle / 2), room);
         const double arc = reach / std::max(1e-9, std::tan(angle / 2));  // radius after clamping
         const Vec3d side = after - glm::dot(after, before) * before;
-        const Vec3d inward = angle > 1e-6 ? glm::normalize(side) : Vec3d(0.0);
+        const Vec3d inward = glm::normalize(side);
         const Vec3d start = path[i] - reach * before;
         const int pieces = std::max(
             1, static_cast<int>(std::lround(angle / (kPi / 2) * 4.0 * std::sqrt(detail_))));
@@ -173,10 +177,14 @@ void SceneKit::tube(const Frame& at, std::span<const Vec3d> path, double radius,
     steps.push_back({path.back(), towards(path.size() - 2, path.size() - 1)});
 
     std::vector<Ring> rings(steps.size());
+    Vec3d before = at.direction(steps[0].tangent);
     Vec3d u = at.aligned(steps[0].centre, steps[0].tangent).x;
     for (size_t i = 0; i < steps.size(); ++i) {
+        // The least turn that takes one tangent to the next, so that the pipe does not twist.
         const Vec3d tangent = at.direction(steps[i].tangent);
+        u -= glm::dot(u, tangent) / (1 + glm::dot(before, tangent)) * (before + tangent);
         u = glm::normalize(u - glm::dot(u, tangent) * tangent);
+        before = tangent;
         rings[i] = {at.point(steps[i].centre), u, glm::cross(tangent, u)};
     }
     sweep(rings, radius, capped, false);
