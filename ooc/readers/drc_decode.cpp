@@ -6,10 +6,10 @@
 #include <draco/metadata/metadata_decoder.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <exception>
 #include <limits>
+#include <type_traits>
 
 namespace pagoda::ooc {
 namespace {
@@ -51,22 +51,48 @@ bool readCounts(draco::DecoderBuffer& buffer, uint8_t method, DracoAnnouncement&
            readCount(buffer, isVarint, announced.faces);
 }
 
-double typeMaximum(draco::DataType type) {
+// Draco's own conversions read through pointers of the type, whatever the bytes: bools of 235.
+template <typename T>
+void readComponents(const uint8_t* from, int count, bool isNormalised, double* out) {
+    for (int c = 0; c < count; ++c) {
+        T value;
+        std::memcpy(&value, from + static_cast<size_t>(c) * sizeof(T), sizeof(T));
+        out[c] = static_cast<double>(value);
+        if (std::is_integral_v<T> && isNormalised) {
+            out[c] = std::max(out[c] / static_cast<double>(std::numeric_limits<T>::max()), -1.0);
+        }
+    }
+}
+
+bool readAnyComponents(draco::DataType type, const uint8_t* from, int count, bool isNormalised,
+                       double* out) {
+    const auto run = [&](auto example) {
+        readComponents<decltype(example)>(from, count, isNormalised, out);
+        return true;
+    };
     switch (type) {
         case draco::DT_INT8:
-            return std::numeric_limits<int8_t>::max();
+            return run(int8_t{});
         case draco::DT_UINT8:
-            return std::numeric_limits<uint8_t>::max();
+            return run(uint8_t{});
         case draco::DT_INT16:
-            return std::numeric_limits<int16_t>::max();
+            return run(int16_t{});
         case draco::DT_UINT16:
-            return std::numeric_limits<uint16_t>::max();
+            return run(uint16_t{});
         case draco::DT_INT32:
-            return std::numeric_limits<int32_t>::max();
+            return run(int32_t{});
         case draco::DT_UINT32:
-            return std::numeric_limits<uint32_t>::max();
+            return run(uint32_t{});
+        case draco::DT_INT64:
+            return run(int64_t{});
+        case draco::DT_UINT64:
+            return run(uint64_t{});
+        case draco::DT_FLOAT32:
+            return run(float{});
+        case draco::DT_FLOAT64:
+            return run(double{});
         default:
-            return 1;
+            return false;
     }
 }
 
@@ -126,25 +152,18 @@ std::unique_ptr<draco::Mesh> decodeDracoMesh(std::span<const std::byte> bytes,
 bool readDracoValue(const draco::PointAttribute& attribute, uint32_t point, int components,
                     bool isNormalised, double* out) {
     const draco::AttributeValueIndex value = attribute.mapped_index(draco::PointIndex(point));
+    const int count = std::min(components, int{attribute.num_components()});
     const auto stride = static_cast<uint64_t>(attribute.byte_stride());
-    if (value.value() >= attribute.size() ||
-        stride * (uint64_t{value.value()} + 1) + static_cast<uint64_t>(attribute.byte_offset()) >
-            attribute.buffer()->data_size()) {
+    const auto offset = static_cast<uint64_t>(attribute.byte_offset());
+    const auto width = static_cast<uint64_t>(count) *
+                       static_cast<uint64_t>(draco::DataTypeLength(attribute.data_type()));
+    if (value.value() >= attribute.size() || attribute.data_type() == draco::DT_INVALID ||
+        offset + stride * value.value() + width > attribute.buffer()->data_size()) {
         return false;
     }
     std::fill_n(out, components, 0.0);
-    const auto count = static_cast<int8_t>(std::min(components, int{attribute.num_components()}));
-    const draco::DataType type = attribute.data_type();
-    if (type == draco::DT_FLOAT32 || type == draco::DT_FLOAT64) {
-        return attribute.ConvertValue<double>(value, count, out);
-    }
-    std::array<int64_t, 4> whole{};
-    if (count > 4 || !attribute.ConvertValue<int64_t>(value, count, whole.data())) return false;
-    for (int8_t c = 0; c < count; ++c) {
-        out[c] = static_cast<double>(whole[static_cast<size_t>(c)]);
-        if (isNormalised) out[c] = std::max(out[c] / typeMaximum(type), -1.0);
-    }
-    return true;
+    return readAnyComponents(attribute.data_type(), attribute.GetAddress(value), count,
+                             isNormalised, out);
 }
 
 }  // namespace pagoda::ooc
