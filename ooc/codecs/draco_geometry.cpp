@@ -279,7 +279,7 @@ void joinVertices(const DecodedPoints& points, const std::vector<uint32_t>& corn
     }
 }
 
-// The corners of all faces, run by run.
+// The corners of all faces, run by run. The runs hold as many triangles as the mesh has faces.
 std::string sortFaces(const draco::Mesh& mesh, const DecodedPoints& points,
                       std::span<const MeshRun> runs, std::vector<uint32_t>& corners) {
     std::vector<uint64_t> next(runs.size());  // where the run's next corner goes
@@ -304,6 +304,9 @@ std::string sortFaces(const draco::Mesh& mesh, const DecodedPoints& points,
 std::string decodeStream(std::span<const std::byte> stream, const GeometryHead& head,
                          std::span<const MeshRun> runs, Geometry& out) {
     if (std::string fault = checkStreamHead(stream, head); !fault.empty()) return fault;
+    uint64_t inRuns = 0;
+    for (const MeshRun& run : runs) inRuns += run.triangleCount;
+    if (inRuns != head.triangleCount) return "runs do not sum to the mesh";
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(stream.data()), stream.size());
     auto decoded = draco::Decoder().DecodeMeshFromBuffer(&buffer);
