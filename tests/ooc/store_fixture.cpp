@@ -144,9 +144,12 @@ std::vector<TriangleKey> sortedTriangles(const PageMesh& mesh) {
             const OctNormal n = mesh.normals.empty() ? OctNormal{} : mesh.normals[v];
             corners[i] = {p.x, p.y, p.z, mesh.colours.empty() ? 0 : mesh.colours[v], n.u, n.v};
         }
-        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()),
-                    corners.end());
-        keys.emplace_back(part, run, corners);
+        std::array<Corner, 3> least = corners;
+        for (int turn = 0; turn < 2; ++turn) {
+            std::rotate(corners.begin(), corners.begin() + 1, corners.end());
+            least = std::min(least, corners);
+        }
+        keys.emplace_back(part, run, least);
     }
     std::sort(keys.begin(), keys.end());
     return keys;
@@ -184,6 +187,7 @@ DatabaseWriter::Content writeDatabase(const std::filesystem::path& path,
     for (auto family = families.rbegin(); family != families.rend(); ++family) {
         content.nodes.insert(content.nodes.end(), family->begin(), family->end());
     }
+    if (options.spoil) options.spoil(content);
     writer.publish(content);
     return content;
 }

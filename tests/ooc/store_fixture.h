@@ -6,6 +6,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <random>
 #include <tuple>
 #include <vector>
@@ -24,7 +25,7 @@ struct MeshOptions {
 [[nodiscard]] PageMesh randomMesh(std::mt19937& random, const MeshOptions& options);
 
 // A corner with all that it carries, and a triangle with its run, part and object: what a page must
-// keep. The corners begin with the least, so that rotation does not matter.
+// keep. Of a triangle's three rotations the least, so that rotation does not matter.
 using Corner = std::tuple<int32_t, int32_t, int32_t, uint32_t, int8_t, int8_t>;
 using TriangleKey = std::tuple<uint32_t, uint32_t, std::array<Corner, 3>>;  // part, run
 [[nodiscard]] std::vector<TriangleKey> sortedTriangles(const PageMesh& mesh);
@@ -51,6 +52,7 @@ struct DatabaseOptions {
     uint32_t leafTriangles = 6;
     bool hasExtraLeaf = true;  // below the root
     uint32_t seed = 1;
+    std::function<void(DatabaseWriter::Content&)> spoil{};  // the last word before publish()
 };
 [[nodiscard]] DatabaseWriter::Content writeDatabase(const std::filesystem::path& path,
                                                     const DatabaseOptions& options);
