@@ -49,25 +49,15 @@ public:
     SignalStop& operator=(const SignalStop&) = delete;
 };
 
-void addCommands([[maybe_unused]] CLI::App& app, [[maybe_unused]] Session& session) {
-#ifdef PAGODA_COMMAND_BUILD
+void addCommands(CLI::App& app, Session& session) {
     addBuildCommand(app, session);
-#endif
-#ifdef PAGODA_COMMAND_INFO
     addInfoCommand(app, session);
-#endif
-#ifdef PAGODA_COMMAND_VERIFY
     addVerifyCommand(app, session);
-#endif
-#ifdef PAGODA_COMMAND_EXTRACT
     addExtractCommand(app, session);
-#endif
-#ifdef PAGODA_COMMAND_RENDER
+#ifdef PAGODA_HAS_VIEWER
     addRenderCommand(app, session);
 #endif
-#ifdef PAGODA_COMMAND_GENERATE
     addGenerateCommand(app, session);
-#endif
 }
 
 int wrongUsage(const CLI::App& app, const CLI::ParseError& error) {
@@ -75,7 +65,8 @@ int wrongUsage(const CLI::App& app, const CLI::ParseError& error) {
     for (const CLI::App* sub : app.get_subcommands()) command += " " + sub->get_name();
     const std::vector<std::string> unknown = app.remaining();
     if (command.empty()) {
-        what = unknown.empty() ? "no command given" : "there is no command or option " + unknown.front();
+        what = unknown.empty() ? "no command given"
+                               : "there is no command or option " + unknown.front();
     }
     std::cerr << "pagoda: " << what << "; see pagoda" << command << " --help\n";
     return kWrongUsage;
