@@ -1,7 +1,8 @@
 // session.h: what every command shares, and the list of commands.
 // A command adds its subcommand to the CLI11 app, keeps its options in a shared_ptr captured by the
-// callback, and does its work in that callback: results on stdout, all else through session.progress.
-// Bad input throws pagoda::Error (exit 1); a run that ends with faults but wrote its result sets exitCode.
+// callback, and does its work in that callback: results on stdout, all else through
+// session.progress. Bad input throws pagoda::Error (exit 1); a run that ends with faults but wrote
+// its result sets exitCode.
 #pragma once
 
 #include "ooc/base/progress.h"
@@ -17,8 +18,9 @@ class App;
 namespace pagoda::tools {
 
 struct Session {
-    std::unique_ptr<Progress> progress;  // a bar with rate and time left on a terminal, lines elsewhere;
-                                         // silent with --quiet; Ctrl-C calls requestStop()
+    std::unique_ptr<Progress>
+        progress;  // a bar with rate and time left on a terminal, lines elsewhere;
+                   // silent with --quiet; Ctrl-C calls requestStop()
     int exitCode = 0;
 };
 

@@ -1,4 +1,5 @@
-// A program of someone else's that found Pagoda by find_package: prints a database's triangle count.
+// A program of someone else's that found Pagoda by find_package: prints a database's triangle
+// count.
 #include "ooc/base/error.h"
 #include "ooc/store/database.h"
 
