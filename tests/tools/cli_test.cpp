@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
 namespace {
 
 using pagoda::tests::runPagoda;
@@ -66,6 +70,21 @@ TEST(CommandLine, ResultsThatCannotBePrintedAreAFailure) {
 TEST(CommandLine, QuietMayStandBeforeOrBehindTheCommand) {
     EXPECT_EQ(runPagoda("--quiet info nosuchfile.pagoda").exitCode, 1);
     EXPECT_EQ(runPagoda("info nosuchfile.pagoda --quiet").exitCode, 1);
+}
+
+// The shell waits until the program has begun to write; the model would take minutes.
+TEST(CommandLine, CtrlCEndsWith130AndLeavesNothingBehind) {
+    const std::string folder = testing::TempDir() + "pagoda-interrupted";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    const auto run =
+        runPagoda("generate torus --triangles 2000000000 -o " + folder +
+                  "/t.ply & program=$!; until [ -n \"$(ls -A " + folder +
+                  ")\" ]; do kill -0 $program || break; done; kill -INT $program; wait $program");
+    EXPECT_EQ(run.exitCode, 130);
+    EXPECT_THAT(run.err, HasSubstr("pagoda: interrupted\n"));
+    EXPECT_TRUE(std::filesystem::is_empty(folder));
+    std::filesystem::remove_all(folder);
 }
 
 }  // namespace
