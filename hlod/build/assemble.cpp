@@ -25,15 +25,16 @@ struct Wedge {
     }
 };
 
-constexpr unsigned kCacheSize = 16;  // FIFO entries: BUILDER.md c), ACMR within 0.5% of the slow one
+constexpr unsigned kCacheSize =
+    16;  // FIFO entries: BUILDER.md c), ACMR within 0.5% of the slow one
 
 uint32_t partOf(const SoupTriangle& triangle, const CellFrame& cell, bool isTranslucent) {
     const Vec3i point = centroidPoint(triangle.corners, cell.extentBits);
     return octantOf(point - cell.origin, cell.bits) + (isTranslucent ? 8 : 0);
 }
 
-// Triangles ordered for the vertex cache, then stably by part, material and object: neighbours mostly stay
-// neighbours within a run.
+// Triangles ordered for the vertex cache, then stably by part, material and object: neighbours
+// mostly stay neighbours within a run.
 std::vector<uint32_t> orderTriangles(std::span<const SoupTriangle> triangles,
                                      const std::vector<uint32_t>& indices, size_t vertexCount,
                                      const CellFrame& cell, const std::vector<bool>& isTranslucent,
@@ -43,8 +44,8 @@ std::vector<uint32_t> orderTriangles(std::span<const SoupTriangle> triangles,
     for (size_t i = 0; i < count; ++i) {
         parts[i] = partOf(triangles[i], cell, isTranslucent[triangles[i].material]);
     }
-    // meshopt does not say where a triangle went, but its order of vertices does: a triangle belongs where
-    // the last of its vertices first appears.
+    // meshopt does not say where a triangle went, but its order of vertices does: a triangle
+    // belongs where the last of its vertices first appears.
     std::vector<uint32_t> optimised(indices.size());
     meshopt_optimizeVertexCacheFifo(optimised.data(), indices.data(), indices.size(), vertexCount,
                                     kCacheSize);
@@ -57,14 +58,16 @@ std::vector<uint32_t> orderTriangles(std::span<const SoupTriangle> triangles,
     std::iota(order.begin(), order.end(), 0u);
     std::vector<uint32_t> key(count);
     for (size_t i = 0; i < count; ++i) {
-        key[i] = std::max({rank[indices[3 * i]], rank[indices[3 * i + 1]], rank[indices[3 * i + 2]]});
+        key[i] =
+            std::max({rank[indices[3 * i]], rank[indices[3 * i + 1]], rank[indices[3 * i + 2]]});
     }
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
         if (parts[a] != parts[b]) return parts[a] < parts[b];
         if (triangles[a].material != triangles[b].material) {
             return triangles[a].material < triangles[b].material;
         }
-        if (triangles[a].object != triangles[b].object) return triangles[a].object < triangles[b].object;
+        if (triangles[a].object != triangles[b].object)
+            return triangles[a].object < triangles[b].object;
         return key[a] != key[b] ? key[a] < key[b] : a < b;
     });
     return order;

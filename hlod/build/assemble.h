@@ -1,5 +1,5 @@
-// assemble.h: triangles with corners of their own -> a page's mesh: welded, sorted into parts and runs,
-// ordered for the vertex cache and for the codecs.
+// assemble.h: triangles with corners of their own -> a page's mesh: welded, sorted into parts and
+// runs, ordered for the vertex cache and for the codecs.
 #pragma once
 
 #include "hlod/build/soup.h"
@@ -13,14 +13,15 @@ namespace pagoda::hlod {
 
 // The cell a page belongs to: parts are its octants.
 struct CellFrame {
-    Vec3i origin{0};   // lattice
-    int bits = 0;      // edge = 2^bits
+    Vec3i origin{0};  // lattice
+    int bits = 0;     // edge = 2^bits
     int extentBits = 0;
 };
 
 // Welds corners of equal position, colour and normal. `isTranslucent` by material id.
 // Deterministic: depends on the order of `triangles` only. Not empty.
-[[nodiscard]] ooc::PageMesh assemblePage(std::span<const SoupTriangle> triangles, const CellFrame& cell,
+[[nodiscard]] ooc::PageMesh assemblePage(std::span<const SoupTriangle> triangles,
+                                         const CellFrame& cell,
                                          const std::vector<bool>& isTranslucent);
 
 }  // namespace pagoda::hlod

@@ -1,5 +1,6 @@
 // build.h: from mesh files to one database. DESIGN.md section 4; a page on it: docs/build.md.
-// The result depends on inputs and settings alone: same bytes for any thread count and memory budget.
+// The result depends on inputs and settings alone: same bytes for any thread count and memory
+// budget.
 #pragma once
 
 #include "hlod/build/inputs.h"
@@ -20,14 +21,15 @@ struct BuildOptions {
     std::vector<InputSpec> inputs;  // sorted by path (expandInputs() does)
     std::filesystem::path target;
     bool force = false;
-    uint64_t memoryBytes = uint64_t{1} << 30;  // private memory aimed at; 256 MiB is the least
-    uint32_t threads = 0;                      // 0: as many as the machine has
-    std::filesystem::path scratchFolder;       // empty: beside the target
+    uint64_t memoryBytes = uint64_t{1} << 30;   // private memory aimed at; 256 MiB is the least
+    uint32_t threads = 0;                       // 0: as many as the machine has
+    std::filesystem::path scratchFolder;        // empty: beside the target
     std::optional<double> precisionModelUnits;  // lattice step, rounded down to a power of two
     ooc::Codec codec = ooc::Codec::Meshopt;
-    uint32_t nodeTriangles = 4096;                 // N: the most a node holds
+    uint32_t nodeTriangles = 4096;  // N: the most a node holds
     uint64_t maxTriangles = uint64_t{1} << 33;
-    ooc::UpAxis upAxis = ooc::UpAxis::Unknown;  // of the database; Unknown: the first input's, else z
+    ooc::UpAxis upAxis =
+        ooc::UpAxis::Unknown;  // of the database; Unknown: the first input's, else z
 };
 
 inline constexpr uint64_t kMinMemoryBytes = uint64_t{256} << 20;
@@ -50,7 +52,8 @@ struct BuildReport {
     uint64_t bentWedges = 0;  // corners of coarse triangles whose normal is over 60 degrees off
     std::vector<LevelReport> levels;
     std::vector<StageReport> stages;
-    uint64_t inputBytes = 0, fileBytes = 0, pageBytes = 0, scratchPeakBytes = 0, privatePeakBytes = 0;
+    uint64_t inputBytes = 0, fileBytes = 0, pageBytes = 0, scratchPeakBytes = 0,
+             privatePeakBytes = 0;
     double latticeStep = 0;
 };
 

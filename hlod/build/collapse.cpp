@@ -9,8 +9,8 @@
 namespace pagoda::hlod {
 namespace {
 
-// What makes a vertex of its own for the simplifier: at edges where these differ, meshoptimizer sees a
-// seam of two wedges (collapsed on both sides at once) or locks the vertex.
+// What makes a vertex of its own for the simplifier: at edges where these differ, meshoptimizer
+// sees a seam of two wedges (collapsed on both sides at once) or locks the vertex.
 struct TopologyKey {
     Vec3i position;
     uint32_t object, material, colour;
@@ -25,11 +25,11 @@ struct TopologyKey {
 };
 
 struct Topology {
-    std::vector<uint32_t> indices;        // 3 a triangle, into keys
+    std::vector<uint32_t> indices;  // 3 a triangle, into keys
     VertexTable<TopologyKey> vertices;
-    std::vector<Vec3f> faceNormals;       // unit, a triangle
-    std::vector<uint32_t> cornerStart;    // a vertex: where its corners begin in `corners`
-    std::vector<uint32_t> corners;        // corner numbers (3 * triangle + corner), by vertex
+    std::vector<Vec3f> faceNormals;     // unit, a triangle
+    std::vector<uint32_t> cornerStart;  // a vertex: where its corners begin in `corners`
+    std::vector<uint32_t> corners;      // corner numbers (3 * triangle + corner), by vertex
 };
 
 Vec3f faceNormal(const std::array<Vec3i, 3>& corners) {
@@ -43,9 +43,9 @@ Topology makeTopology(std::span<const SoupTriangle> triangles) {
     topology.vertices.reset(triangles.size() * 3);
     for (const SoupTriangle& triangle : triangles) {
         for (size_t corner = 0; corner < 3; ++corner) {
-            topology.indices.push_back(topology.vertices.add({triangle.corners[corner], triangle.object,
-                                                              triangle.material,
-                                                              triangle.colours[corner]}));
+            topology.indices.push_back(
+                topology.vertices.add({triangle.corners[corner], triangle.object, triangle.material,
+                                       triangle.colours[corner]}));
         }
         topology.faceNormals.push_back(faceNormal(triangle.corners));
     }
@@ -95,14 +95,15 @@ SimplifyResult collapseEdges(const SimplifyRequest& request) {
     const Topology topology = makeTopology(request.triangles);
     const std::vector<TopologyKey>& keys = topology.vertices.keys();
     std::vector<Vec3f> positions(keys.size());
-    for (size_t i = 0; i < keys.size(); ++i) positions[i] = Vec3f(keys[i].position - request.cell.origin);
+    for (size_t i = 0; i < keys.size(); ++i)
+        positions[i] = Vec3f(keys[i].position - request.cell.origin);
 
     std::vector<uint32_t> indices(topology.indices.size());
     constexpr float kAnyError = 1e6f;  // the target decides, not the error
-    const size_t count = meshopt_simplify(indices.data(), topology.indices.data(), topology.indices.size(),
-                                          &positions[0].x, positions.size(), sizeof(Vec3f),
-                                          size_t{request.targetTriangles} * 3, kAnyError,
-                                          meshopt_SimplifyLockBorder, nullptr);
+    const size_t count = meshopt_simplify(
+        indices.data(), topology.indices.data(), topology.indices.size(), &positions[0].x,
+        positions.size(), sizeof(Vec3f), size_t{request.targetTriangles} * 3, kAnyError,
+        meshopt_SimplifyLockBorder, nullptr);
     SimplifyResult result;
     result.triangles.reserve(count / 3);
     for (size_t i = 0; i < count; i += 3) {
@@ -110,9 +111,11 @@ SimplifyResult collapseEdges(const SimplifyRequest& request) {
         for (size_t corner = 0; corner < 3; ++corner) {
             triangle.corners[corner] = keys[indices[i + corner]].position;
         }
-        if (triangle.corners[0] == triangle.corners[1] || triangle.corners[1] == triangle.corners[2] ||
+        if (triangle.corners[0] == triangle.corners[1] ||
+            triangle.corners[1] == triangle.corners[2] ||
             triangle.corners[2] == triangle.corners[0]) {
-            continue;  // its edges cancel; a needle with three corners must stay, or its edges would open
+            continue;  // its edges cancel; a needle with three corners must stay, or its edges
+                       // would open
         }
         const Vec3f normal = faceNormal(triangle.corners);
         triangle.object = keys[indices[i]].object;
@@ -125,19 +128,9 @@ SimplifyResult collapseEdges(const SimplifyRequest& request) {
         mendNormals(triangle, normal, result.bentWedges);
         result.triangles.push_back(triangle);
     }
-    result.isStuck = result.triangles.size() > request.targetTriangles + request.targetTriangles / 8;
+    result.isStuck =
+        result.triangles.size() > request.targetTriangles + request.targetTriangles / 8;
     return result;
-}
-
-SimplifyResult simplifyNode(const SimplifyRequest& request) {
-    if (request.triangles.size() <= request.targetTriangles) {
-        SimplifyResult same;
-        same.triangles.assign(request.triangles.begin(), request.triangles.end());
-        return same;
-    }
-    SimplifyResult result = collapseEdges(request);
-    if (!result.triangles.empty() && result.triangles.size() <= request.budgetTriangles) return result;
-    return clusterTriangles(request);
 }
 
 }  // namespace pagoda::hlod

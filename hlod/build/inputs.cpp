@@ -31,8 +31,9 @@ std::string formatOf(const fs::path& path) {
 }
 
 [[noreturn]] void badOption(const std::string& argument, const std::string& what) {
-    throw Error(argument, "", what,
-                "write INPUT@up=y|z,unit=FACTOR|mm|cm|m|km|in|ft,move=X:Y:Z,matrix=16 numbers by row");
+    throw Error(
+        argument, "", what,
+        "write INPUT@up=y|z,unit=FACTOR|mm|cm|m|km|in|ft,move=X:Y:Z,matrix=16 numbers by row");
 }
 
 double parseNumber(const std::string& argument, const std::string& text) {
@@ -44,7 +45,8 @@ double parseNumber(const std::string& argument, const std::string& text) {
     return value;
 }
 
-std::vector<double> parseNumbers(const std::string& argument, const std::string& text, size_t count) {
+std::vector<double> parseNumbers(const std::string& argument, const std::string& text,
+                                 size_t count) {
     std::vector<double> numbers;
     size_t begin = 0;
     while (begin <= text.size()) {
@@ -60,8 +62,8 @@ std::vector<double> parseNumbers(const std::string& argument, const std::string&
 }
 
 double parseUnit(const std::string& argument, const std::string& text) {
-    static const std::map<std::string, double> kUnits = {{"mm", 0.001}, {"cm", 0.01},  {"m", 1.0},
-                                                         {"km", 1000.0}, {"in", 0.0254}, {"ft", 0.3048}};
+    static const std::map<std::string, double> kUnits = {
+        {"mm", 0.001}, {"cm", 0.01}, {"m", 1.0}, {"km", 1000.0}, {"in", 0.0254}, {"ft", 0.3048}};
     if (const auto unit = kUnits.find(text); unit != kUnits.end()) return unit->second;
     const double factor = parseNumber(argument, text);
     if (factor <= 0) badOption(argument, "a unit is a factor above 0");
@@ -77,7 +79,8 @@ void applyOption(InputSpec& spec, const std::string& argument, const std::string
         spec.unit = parseUnit(argument, value);
     } else if (key == "move") {
         const std::vector<double> by = parseNumbers(argument, value, 3);
-        for (int axis = 0; axis < 3; ++axis) spec.transform[3][axis] += by[static_cast<size_t>(axis)];
+        for (int axis = 0; axis < 3; ++axis)
+            spec.transform[3][axis] += by[static_cast<size_t>(axis)];
         spec.isTransformed = true;
     } else if (key == "matrix") {
         const std::vector<double> rows = parseNumbers(argument, value, 16);
@@ -197,7 +200,8 @@ public:
 
 private:
     void place() {
-        for (Vec3d& position : placed_.positions) position = Vec3d(placement_ * glm::dvec4(position, 1.0));
+        for (Vec3d& position : placed_.positions)
+            position = Vec3d(placement_ * glm::dvec4(position, 1.0));
         for (Vec3f& normal : placed_.normals) {
             const Vec3d turned = normalPlacement_ * Vec3d(normal);
             const double length = glm::length(turned);
@@ -206,8 +210,10 @@ private:
         if (!isMirrored_) return;
         for (size_t corner = 0; corner < placed_.positions.size(); corner += 3) {
             std::swap(placed_.positions[corner + 1], placed_.positions[corner + 2]);
-            if (!placed_.colours.empty()) std::swap(placed_.colours[corner + 1], placed_.colours[corner + 2]);
-            if (!placed_.normals.empty()) std::swap(placed_.normals[corner + 1], placed_.normals[corner + 2]);
+            if (!placed_.colours.empty())
+                std::swap(placed_.colours[corner + 1], placed_.colours[corner + 2]);
+            if (!placed_.normals.empty())
+                std::swap(placed_.normals[corner + 1], placed_.normals[corner + 2]);
         }
     }
 
@@ -232,7 +238,9 @@ public:
         return target_.addMaterial(material);
     }
     void addTriangles(const ooc::TriangleBatch& batch) override { target_.addTriangles(batch); }
-    void dropped(ooc::DropReason reason, uint64_t count) override { target_.dropped(reason, count); }
+    void dropped(ooc::DropReason reason, uint64_t count) override {
+        target_.dropped(reason, count);
+    }
     void ignored(std::string_view what, uint64_t count) override { target_.ignored(what, count); }
     void advance(uint64_t bytes) override { target_.advance(bytes); }
 
@@ -263,7 +271,8 @@ std::vector<InputSpec> expandInputs(const std::vector<std::string>& arguments) {
     return specs;
 }
 
-InputSet::InputSet(std::vector<InputSpec> specs, const ooc::ReaderOptions& options, ooc::UpAxis databaseUp)
+InputSet::InputSet(std::vector<InputSpec> specs, const ooc::ReaderOptions& options,
+                   ooc::UpAxis databaseUp)
     : databaseUp_(databaseUp) {
     for (InputSpec& spec : specs) {
         Entry entry{.spec = spec, .reader = ooc::openReader(spec.path, options)};
@@ -284,7 +293,8 @@ InputSet::InputSet(std::vector<InputSpec> specs, const ooc::ReaderOptions& optio
         glm::dmat4 scale(entry.spec.unit);
         scale[3][3] = 1.0;
         entry.placement = entry.spec.transform * scale * turn;
-        entry.isPlaced = entry.spec.isTransformed || entry.spec.unit != 1.0 || entry.spec.up != databaseUp_;
+        entry.isPlaced =
+            entry.spec.isTransformed || entry.spec.unit != 1.0 || entry.spec.up != databaseUp_;
         sources_.push_back({.name = entry.spec.path.filename().string(),
                             .format = formatOf(entry.spec.path),
                             .attribution = {},

@@ -26,10 +26,12 @@ struct InputSpec {
 [[nodiscard]] std::vector<InputSpec> expandInputs(const std::vector<std::string>& arguments);
 
 // All inputs as one: turns, scales and places the triangles of each, numbers objects and materials
-// through, and hangs each file's objects under one object with the file's name when there are several.
+// through, and hangs each file's objects under one object with the file's name when there are
+// several.
 class InputSet {
 public:
-    InputSet(std::vector<InputSpec> specs, const ooc::ReaderOptions& options, ooc::UpAxis databaseUp);
+    InputSet(std::vector<InputSpec> specs, const ooc::ReaderOptions& options,
+             ooc::UpAxis databaseUp);
 
     // The same calls in the same order every time. Progress in bytes of the files.
     void read(ooc::TriangleSink& sink);

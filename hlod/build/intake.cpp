@@ -8,13 +8,16 @@ namespace pagoda::hlod {
 namespace {
 
 constexpr size_t kSpillBufferBytes = size_t{4} << 20;
-// A triangle longer than this that has no area on the lattice is a sliver: its neighbours cover it to
-// within a step. A shorter one is detail lost.
+// A triangle longer than this that has no area on the lattice is a sliver: its neighbours cover it
+// to within a step. A shorter one is detail lost.
 constexpr double kSliverSteps = 4.0;
-// Corner normals within about 2.5 degrees of the face's: the triangle is flat, and its normal derivable.
+// Corner normals within about 2.5 degrees of the face's: the triangle is flat, and its normal
+// derivable.
 constexpr float kFlatCosine = 0.999f;
 
-bool isFinite(const Vec3d& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+bool isFinite(const Vec3d& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
 
 class IntakeSink : public ooc::TriangleSink {
 public:
@@ -71,7 +74,8 @@ void IntakeSink::dropWithoutArea(const Vec3d& a, const Vec3d& b, const Vec3d& c)
         drop(ooc::DropReason::Degenerate, 1);
         return;
     }
-    const double longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+    const double longest =
+        std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
     if (longest >= kSliverSteps * lattice_.step()) {
         drop(ooc::DropReason::Sliver, 1);
         return;
@@ -82,7 +86,8 @@ void IntakeSink::dropWithoutArea(const Vec3d& a, const Vec3d& b, const Vec3d& c)
 }
 
 // Flat triangles carry no normals: box corners then weld across their edges.
-void IntakeSink::fillNormals(const ooc::TriangleBatch& batch, size_t number, SoupTriangle& triangle) const {
+void IntakeSink::fillNormals(const ooc::TriangleBatch& batch, size_t number,
+                             SoupTriangle& triangle) const {
     const Vec3d* p = &batch.positions[3 * number];
     const Vec3d cross = glm::cross(p[1] - p[0], p[2] - p[0]);
     const double length = glm::length(cross);
@@ -117,8 +122,9 @@ void IntakeSink::addTriangle(const ooc::TriangleBatch& batch, size_t number) {
     triangle.material = batch.material;
     if (intake_.layout.hasColours) {
         for (size_t corner = 0; corner < 3; ++corner) {
-            triangle.colours[corner] = batch.colours.empty() ? intake_.materials[batch.material].colour
-                                                             : batch.colours[3 * number + corner];
+            triangle.colours[corner] = batch.colours.empty()
+                                           ? intake_.materials[batch.material].colour
+                                           : batch.colours[3 * number + corner];
         }
     }
     if (!batch.normals.empty()) fillNormals(batch, number, triangle);
@@ -147,7 +153,8 @@ Intake takeIn(InputSet& inputs, const ooc::Lattice& lattice, SoupLayout layout,
     progress.beginStage("read and snap", inputs.totalBytes(), "B");
     inputs.read(sink);
     sink.flush();
-    for (uint32_t i = 0; i < intake.objects.size(); ++i) intake.objects[i].source = inputs.sourceOfObject(i);
+    for (uint32_t i = 0; i < intake.objects.size(); ++i)
+        intake.objects[i].source = inputs.sourceOfObject(i);
     return intake;
 }
 

@@ -7,7 +7,10 @@
 namespace pagoda::hlod {
 
 NodeStore::NodeStore(const std::filesystem::path& scratchFolder, ooc::Codec codec)
-    : codec_(codec), pages_(File::createScratch(scratchFolder)) {}
+    : codec_(codec),
+      pages_(File::createScratch(scratchFolder)),
+      proxies_(File::createScratch(scratchFolder)) {
+}
 
 ooc::NodeRecord NodeStore::add(ooc::NodeRecord record, ooc::PageMesh mesh) {
     record.box.extend(mesh.box());
@@ -21,7 +24,8 @@ ooc::NodeRecord NodeStore::add(ooc::NodeRecord record, ooc::PageMesh mesh) {
     flag(!mesh.normals.empty(), ooc::kNodeHasNormals);
     flag(mesh.opaqueTriangleCount() < mesh.triangleCount(), ooc::kNodeHasTranslucent);
 
-    const std::vector<std::byte> bytes = encodePage({.mesh = std::move(mesh), .zippers = {}}, codec_);
+    const std::vector<std::byte> bytes =
+        encodePage({.mesh = std::move(mesh), .zippers = {}}, codec_);
     record.pageBytes = static_cast<uint32_t>(bytes.size());
     record.pageChecksum = hash64(bytes);
     {
@@ -33,6 +37,30 @@ ooc::NodeRecord NodeStore::add(ooc::NodeRecord record, ooc::PageMesh mesh) {
     const std::scoped_lock lock(nodesMutex_);
     nodes_.emplace(record.id.value, record);
     return record;
+}
+
+void NodeStore::addProxy(ooc::NodeId id, std::span<const SoupTriangle> proxy) {
+    Range range{.offset = 0, .count = proxy.size()};
+    {
+        const std::scoped_lock lock(nodesMutex_);
+        range.offset = proxyBytes_;
+        proxyBytes_ += proxy.size_bytes();
+        proxyRanges_.emplace(id.value, range);
+    }
+    proxies_.writeAt(range.offset, std::as_bytes(proxy));
+}
+
+std::vector<SoupTriangle> NodeStore::readProxy(ooc::NodeId id) const {
+    Range range;
+    {
+        const std::scoped_lock lock(nodesMutex_);
+        const auto found = proxyRanges_.find(id.value);
+        if (found == proxyRanges_.end()) return {};
+        range = found->second;
+    }
+    std::vector<SoupTriangle> proxy(range.count);
+    proxies_.readAt(range.offset, std::as_writable_bytes(std::span(proxy)));
+    return proxy;
 }
 
 ooc::NodeRecord NodeStore::find(ooc::NodeId id) const {
@@ -68,7 +96,8 @@ std::vector<ooc::NodeRecord> NodeStore::inFileOrder() const {
     for (size_t i = 0; i < order.size(); ++i) {
         const ooc::NodeRecord parent = order[i];
         for (uint32_t octant = 0; octant < 8; ++octant) {
-            if (parent.childMask & (1u << octant)) order.push_back(nodes_.at(parent.id.child(octant).value));
+            if (parent.childMask & (1u << octant))
+                order.push_back(nodes_.at(parent.id.child(octant).value));
         }
         for (uint32_t slot = 1; slot <= parent.extraLeafCount(); ++slot) {
             order.push_back(nodes_.at(parent.id.extra(slot).value));

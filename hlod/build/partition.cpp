@@ -60,7 +60,8 @@ public:
 private:
     void refine(const Piece& piece);
     [[nodiscard]] Step count(const Piece& piece) const;
-    void visit(const Step& step, int level, uint32_t morton, ooc::NodeId cell, std::vector<Piece>& found);
+    void visit(const Step& step, int level, uint32_t morton, ooc::NodeId cell,
+               std::vector<Piece>& found);
     void distribute(const Step& step, const Piece& from, std::vector<Piece>& found);
     template <typename Visit>
     void forEachTriangle(const Piece& piece, Visit&& visit) const;
@@ -89,10 +90,11 @@ void Partitioner::forEachTriangle(const Piece& piece, Visit&& visit) const {
     }
 }
 
-// Cells that cannot be cut, or need not be, stay whole; the others are cut into smaller pieces, which are
-// looked at again.
+// Cells that cannot be cut, or need not be, stay whole; the others are cut into smaller pieces,
+// which are looked at again.
 void Partitioner::refine(const Piece& piece) {
-    if (piece.triangleCount <= pieceTriangles_ || piece.isExtra || piece.cell.depth() >= result_.maxDepth) {
+    if (piece.triangleCount <= pieceTriangles_ || piece.isExtra ||
+        piece.cell.depth() >= result_.maxDepth) {
         result_.pieces.push_back(piece);
         return;
     }
@@ -129,7 +131,8 @@ Step Partitioner::count(const Piece& piece) const {
             ++step.homedAt[static_cast<size_t>(level)][morton >> (3 * (step.levels - level))];
         }
     });
-    step.totals[static_cast<size_t>(step.levels)].assign(step.gridCounts.begin(), step.gridCounts.end());
+    step.totals[static_cast<size_t>(step.levels)].assign(step.gridCounts.begin(),
+                                                         step.gridCounts.end());
     for (int level = step.levels - 1; level >= 0; --level) {
         std::vector<uint64_t>& totals = step.totals[static_cast<size_t>(level)];
         const std::vector<uint64_t>& below = step.totals[static_cast<size_t>(level) + 1];
@@ -203,7 +206,8 @@ void Partitioner::distribute(const Step& step, const Piece& from, std::vector<Pi
         const Target& target = byGrid[morton];
         uint32_t number = target.piece;
         if (number == UINT32_MAX || home < target.level) {
-            const uint64_t path = (step.cell.path() << (3 * home)) | (morton >> (3 * (step.levels - home)));
+            const uint64_t path =
+                (step.cell.path() << (3 * home)) | (morton >> (3 * (step.levels - home)));
             number = extraOf.at(path);
         }
         buffers[number].insert(buffers[number].end(), record, record + stride);
@@ -217,7 +221,8 @@ void Partitioner::distribute(const Step& step, const Piece& from, std::vector<Pi
 Partition partitionTriangles(Intake& intake, const ooc::Lattice& lattice,
                              const std::filesystem::path& scratchFolder, uint64_t pieceTriangles,
                              uint32_t nodeTriangles, Progress& progress) {
-    return Partitioner(intake, lattice, scratchFolder, pieceTriangles, nodeTriangles, progress).run(intake);
+    return Partitioner(intake, lattice, scratchFolder, pieceTriangles, nodeTriangles, progress)
+        .run(intake);
 }
 
 }  // namespace pagoda::hlod

@@ -1,10 +1,10 @@
-// partition.h: cuts the Morton order of all triangles into pieces that fit in memory, and moves every
-// triangle to its piece in scratch. DESIGN.md section 4, step 3.
+// partition.h: cuts the Morton order of all triangles into pieces that fit in memory, and moves
+// every triangle to its piece in scratch. DESIGN.md section 4, step 3.
 //
-// A piece is the whole subtree of one cell, with at most kPieceTriangles triangles. Cells above pieces
-// are the top: built last, from the pieces' finished roots. A triangle too long for the children of a top cell
-// (homeDepth) stays there, in a piece of its own kind. Pieces depend on the input alone, never on the
-// memory budget or the number of threads.
+// A piece is the whole subtree of one cell, with at most kPieceTriangles triangles. Cells above
+// pieces are the top: built last, from the pieces' finished roots. A triangle too long for the
+// children of a top cell (homeDepth) stays there, in a piece of its own kind. Pieces depend on the
+// input alone, never on the memory budget or the number of threads.
 #pragma once
 
 #include "hlod/build/intake.h"
@@ -16,22 +16,22 @@
 
 namespace pagoda::hlod {
 
-// Fits the least memory budget (256 MiB): 64 bytes a triangle, twice for the two threads of the least
-// machine, beside one node's working set each.
+// Fits the least memory budget (256 MiB): 64 bytes a triangle, twice for the two threads of the
+// least machine, beside one node's working set each.
 inline constexpr uint64_t kPieceTriangles = uint64_t{1} << 19;
 
 struct Piece {
     ooc::NodeId cell;
-    bool isExtra = false;       // only the extra leaves of `cell`, which is a top cell
+    bool isExtra = false;  // only the extra leaves of `cell`, which is a top cell
     uint64_t firstTriangle = 0, triangleCount = 0;  // in `file`
     uint32_t file = 0;
 };
 
 struct Partition {
     std::vector<File> files;
-    std::vector<Piece> pieces;            // Morton order
-    std::vector<ooc::NodeId> topCells;    // parents before children
-    int maxDepth = 0;                     // of any cell: min(kMaxDepth, extentBits)
+    std::vector<Piece> pieces;          // Morton order
+    std::vector<ooc::NodeId> topCells;  // parents before children
+    int maxDepth = 0;                   // of any cell: min(kMaxDepth, extentBits)
     uint64_t scratchBytes = 0;
 };
 

@@ -9,7 +9,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string upName(ooc::UpAxis up) { return up == ooc::UpAxis::Y ? "y" : "z"; }
+std::string upName(ooc::UpAxis up) {
+    return up == ooc::UpAxis::Y ? "y" : "z";
+}
 
 Json levelsJson(const std::vector<LevelReport>& levels) {
     Json list = Json::array();
@@ -35,7 +37,8 @@ Json sourceJson(const InputSet::Source& source) {
     if (source.transform != glm::dmat4(1.0)) {
         Json rows = Json::array();
         for (int row = 0; row < 4; ++row) {
-            for (int column = 0; column < 4; ++column) rows.push_back(source.transform[column][row]);
+            for (int column = 0; column < 4; ++column)
+                rows.push_back(source.transform[column][row]);
         }
         json["transform"] = rows;
     }
@@ -71,14 +74,15 @@ void summariseNodes(std::span<const ooc::NodeRecord> nodes, BuildReport& report)
     }
     for (size_t level = 0; level < errors.size(); ++level) {
         if (errors[level].empty()) continue;
-        const auto middle = errors[level].begin() + static_cast<ptrdiff_t>(errors[level].size() / 2);
+        const auto middle =
+            errors[level].begin() + static_cast<ptrdiff_t>(errors[level].size() / 2);
         std::nth_element(errors[level].begin(), middle, errors[level].end());
         report.levels[level].medianError = *middle;
     }
 }
 
-std::string makeMetadata(const BuildOptions& options, const ooc::Lattice& lattice, const InputSet& inputs,
-                         const BuildReport& report) {
+std::string makeMetadata(const BuildOptions& options, const ooc::Lattice& lattice,
+                         const InputSet& inputs, const BuildReport& report) {
     Json sources = Json::array();
     for (const InputSet::Source& source : inputs.sources()) sources.push_back(sourceJson(source));
     const Json metadata = {{"sources", sources},
@@ -103,8 +107,9 @@ std::string makeMetadata(const BuildOptions& options, const ooc::Lattice& lattic
 std::string toJson(const BuildReport& report) {
     Json stages = Json::array();
     for (const StageReport& stage : report.stages) {
-        stages.push_back(
-            {{"name", stage.name}, {"wall_seconds", stage.wallSeconds}, {"cpu_seconds", stage.cpuSeconds}});
+        stages.push_back({{"name", stage.name},
+                          {"wall_seconds", stage.wallSeconds},
+                          {"cpu_seconds", stage.cpuSeconds}});
     }
     const Json json = {{"triangles_in", report.trianglesIn},
                        {"triangles", report.triangles},

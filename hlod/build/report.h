@@ -13,7 +13,8 @@ namespace pagoda::hlod {
 // Fills nodes, leaves, levels and the sloppy and stuck counts.
 void summariseNodes(std::span<const ooc::NodeRecord> nodes, BuildReport& report);
 
-// The database's metadata: what depends on input and settings alone (no times, no paths beyond file names).
+// The database's metadata: what depends on input and settings alone (no times, no paths beyond file
+// names).
 [[nodiscard]] std::string makeMetadata(const BuildOptions& options, const ooc::Lattice& lattice,
                                        const InputSet& inputs, const BuildReport& report);
 

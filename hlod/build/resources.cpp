@@ -20,7 +20,8 @@ uint64_t privateBytes() {
     uint64_t kilobytes = 0;
     while (std::fgets(line, sizeof line, status) != nullptr) {
         unsigned long long value = 0;
-        if (std::sscanf(line, "RssAnon: %llu", &value) == 1 || std::sscanf(line, "RssShmem: %llu", &value) == 1) {
+        if (std::sscanf(line, "RssAnon: %llu", &value) == 1 ||
+            std::sscanf(line, "RssShmem: %llu", &value) == 1) {
             kilobytes += value;
         }
     }
@@ -30,7 +31,9 @@ uint64_t privateBytes() {
 
 }  // namespace
 
-StageClock::StageClock() : wall_(std::chrono::steady_clock::now()), cpuSeconds_(processCpuSeconds()) {}
+StageClock::StageClock()
+    : wall_(std::chrono::steady_clock::now()), cpuSeconds_(processCpuSeconds()) {
+}
 
 void StageClock::mark(const std::string& name) {
     const auto wall = std::chrono::steady_clock::now();

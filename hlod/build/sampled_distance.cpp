@@ -7,8 +7,8 @@
 namespace pagoda::hlod {
 namespace {
 
-// Samples a direction. The bound of the builder's own issue replaces sampling; 4096 a node cost about as
-// much as the simplification itself.
+// Samples a direction. The bound of the builder's own issue replaces sampling; 4096 a node cost
+// about as much as the simplification itself.
 constexpr size_t kMaxSamples = 4096;
 constexpr size_t kScoutStride = 61;
 
@@ -29,7 +29,8 @@ LocalMesh localMesh(std::span<const SoupTriangle> triangles, const Vec3i& origin
     return mesh;
 }
 
-// Centroids and first corners of evenly chosen triangles of `from`: points inside faces and at vertices.
+// Centroids and first corners of evenly chosen triangles of `from`: points inside faces and at
+// vertices.
 double oneWay(const LocalMesh& from, const SurfaceDistance& to) {
     const size_t count = from.positions.size() / 3;
     const size_t stride = std::max<size_t>(1, 2 * count / kMaxSamples);
@@ -41,7 +42,8 @@ double oneWay(const LocalMesh& from, const SurfaceDistance& to) {
         largest = std::max(largest, to.squaredDistance(centroid, near, largest));
         largest = std::max(largest, to.squaredDistance(a, near, largest));
     };
-    // A few spread over all find a great distance early: after them most samples end at their first guess.
+    // A few spread over all find a great distance early: after them most samples end at their first
+    // guess.
     for (size_t i = 0; i < count; i += stride * kScoutStride) sample(i);
     for (size_t i = 0; i < count; i += stride) sample(i);
     return std::sqrt(static_cast<double>(largest));

@@ -56,8 +56,8 @@ static_assert(offsetof(SoupTriangle, colours) == 44);
     return glm::i64vec3(corners[0]) + glm::i64vec3(corners[1]) + glm::i64vec3(corners[2]);
 }
 
-// Exactly no area: two corners equal or all three on a line. Lattice coordinates are at most 2^30, so that
-// the products fit 64 bits.
+// Exactly no area: two corners equal or all three on a line. Lattice coordinates are at most 2^30,
+// so that the products fit 64 bits.
 [[nodiscard]] inline bool hasNoArea(const std::array<Vec3i, 3>& corners) {
     const glm::i64vec3 u = glm::i64vec3(corners[1]) - glm::i64vec3(corners[0]);
     const glm::i64vec3 v = glm::i64vec3(corners[2]) - glm::i64vec3(corners[0]);
@@ -73,17 +73,20 @@ static_assert(offsetof(SoupTriangle, colours) == 44);
             static_cast<int32_t>(std::min(sum.z / 3, last))};
 }
 
-// The depth of the smallest cells whose children are still large against the triangle: in deeper cells
-// it would be longer than half a child's edge (RUNTIME.md d: k = 0.5), and it stays above as an extra
-// leaf. Cells of depth d have edge 2^(extentBits - d); the answer is the least d with edge < 4 * longest.
+// The depth of the smallest cells whose children are still large against the triangle: in deeper
+// cells it would be longer than half a child's edge (RUNTIME.md d: k = 0.5), and it stays above as
+// an extra leaf. Cells of depth d have edge 2^(extentBits - d); the answer is the least d with edge
+// < 4 * longest.
 [[nodiscard]] inline int homeDepth(const std::array<Vec3i, 3>& corners, int extentBits) {
     uint64_t longest = 0;
     for (size_t i = 0; i < 3; ++i) {
         const glm::i64vec3 edge = glm::i64vec3(corners[(i + 1) % 3]) - glm::i64vec3(corners[i]);
-        longest = std::max(longest, static_cast<uint64_t>(edge.x * edge.x + edge.y * edge.y + edge.z * edge.z));
+        longest = std::max(
+            longest, static_cast<uint64_t>(edge.x * edge.x + edge.y * edge.y + edge.z * edge.z));
     }
-    const int bits = static_cast<int>(std::bit_width(longest - 1)) + 4;  // of 16 * longest - 1, which may need 66 bits
-    const int largestFitting = (bits - 1) / 2;         // the largest k with 4^k < 16 * longest
+    const int bits = static_cast<int>(std::bit_width(longest - 1)) +
+                     4;                         // of 16 * longest - 1, which may need 66 bits
+    const int largestFitting = (bits - 1) / 2;  // the largest k with 4^k < 16 * longest
     return std::max(0, extentBits - largestFitting);
 }
 

@@ -9,7 +9,9 @@ namespace {
 
 constexpr uint32_t kLeafTriangles = 4;
 
-float squared(const Vec3f& v) { return glm::dot(v, v); }
+float squared(const Vec3f& v) {
+    return glm::dot(v, v);
+}
 
 // Ericson, Real-Time Collision Detection, section 5.1.5.
 float toTriangle(const Vec3f& point, const Vec3f& a, const Vec3f& ab, const Vec3f& ac) {
@@ -42,7 +44,8 @@ float toBox(const Vec3f& point, const Vec3f& min, const Vec3f& max) {
 
 }  // namespace
 
-SurfaceDistance::SurfaceDistance(std::span<const Vec3f> positions, std::span<const uint32_t> indices) {
+SurfaceDistance::SurfaceDistance(std::span<const Vec3f> positions,
+                                 std::span<const uint32_t> indices) {
     const auto count = static_cast<uint32_t>(indices.size() / 3);
     std::vector<Vec3f> centroids(count);
     for (uint32_t i = 0; i < count; ++i) {
@@ -64,9 +67,9 @@ SurfaceDistance::SurfaceDistance(std::span<const Vec3f> positions, std::span<con
     }
 }
 
-void SurfaceDistance::split(uint32_t node, std::vector<Vec3f>& centroids, std::vector<uint32_t>& order,
-                            uint32_t begin, uint32_t end, std::span<const Vec3f> positions,
-                            std::span<const uint32_t> indices) {
+void SurfaceDistance::split(uint32_t node, std::vector<Vec3f>& centroids,
+                            std::vector<uint32_t>& order, uint32_t begin, uint32_t end,
+                            std::span<const Vec3f> positions, std::span<const uint32_t> indices) {
     Vec3f min(std::numeric_limits<float>::max()), max(std::numeric_limits<float>::lowest());
     Vec3f centroidMin = min, centroidMax = max;
     for (uint32_t i = begin; i < end; ++i) {
@@ -88,8 +91,9 @@ void SurfaceDistance::split(uint32_t node, std::vector<Vec3f>& centroids, std::v
     const Vec3f size = centroidMax - centroidMin;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const uint32_t middle = begin + (end - begin) / 2;
-    std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end,
-                     [&](uint32_t a, uint32_t b) { return centroids[a][axis] < centroids[b][axis]; });
+    std::nth_element(
+        order.begin() + begin, order.begin() + middle, order.begin() + end,
+        [&](uint32_t a, uint32_t b) { return centroids[a][axis] < centroids[b][axis]; });
     const auto left = static_cast<uint32_t>(nodes_.size());
     nodes_[node].first = left;
     nodes_.emplace_back();
@@ -115,7 +119,8 @@ float SurfaceDistance::squaredDistance(const Vec3f& point, uint32_t& nearTriangl
         const Node& node = nodes_[entry.node];
         if (node.count > 0) {
             for (uint32_t i = node.first; i < node.first + node.count; ++i) {
-                const float distance = toTriangle(point, triangles_[i].a, triangles_[i].ab, triangles_[i].ac);
+                const float distance =
+                    toTriangle(point, triangles_[i].a, triangles_[i].ab, triangles_[i].ac);
                 if (distance < best) {
                     best = distance;
                     nearTriangle = treeOrder_[i];
@@ -124,7 +129,8 @@ float SurfaceDistance::squaredDistance(const Vec3f& point, uint32_t& nearTriangl
             continue;
         }
         Entry near{node.first, toBox(point, nodes_[node.first].min, nodes_[node.first].max)};
-        Entry far{node.first + 1, toBox(point, nodes_[node.first + 1].min, nodes_[node.first + 1].max)};
+        Entry far{node.first + 1,
+                  toBox(point, nodes_[node.first + 1].min, nodes_[node.first + 1].max)};
         if (far.distance < near.distance) std::swap(near, far);
         if (far.distance < best) stack[depth++] = far;
         if (near.distance < best) stack[depth++] = near;

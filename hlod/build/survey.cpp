@@ -16,7 +16,9 @@ constexpr double kStepsPerDetail = 16.0;
 // The share of triangles that may be finer than the finest detail.
 constexpr double kFineShare = 0.001;
 
-bool isFinite(const Vec3d& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+bool isFinite(const Vec3d& p) {
+    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
 
 class SurveySink : public ooc::TriangleSink {
 public:
@@ -33,8 +35,12 @@ public:
         survey_.hasColours |= !batch.colours.empty();
         survey_.hasNormals |= !batch.normals.empty();
     }
-    void dropped(ooc::DropReason, uint64_t) override {}
-    void ignored(std::string_view, uint64_t) override {}
+    void dropped(ooc::DropReason reason, uint64_t count) override {
+        if (count > 0) survey_.dropped[std::string(dropReasonName(reason))] += count;
+    }
+    void ignored(std::string_view what, uint64_t count) override {
+        survey_.ignored[std::string(what)] += count;
+    }
     void advance(uint64_t bytes) override {
         progress_.advance(bytes);
         progress_.check();
@@ -42,7 +48,10 @@ public:
 
 private:
     void addTriangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-        if (!isFinite(a) || !isFinite(b) || !isFinite(c)) return;
+        if (!isFinite(a) || !isFinite(b) || !isFinite(c)) {
+            dropped(ooc::DropReason::NonFinite, 1);
+            return;
+        }
         survey_.bounds.extend(a);
         survey_.bounds.extend(b);
         survey_.bounds.extend(c);
@@ -83,20 +92,23 @@ Survey surveyInputs(InputSet& inputs, Progress& progress) {
     return survey;
 }
 
-ooc::Lattice chooseLattice(const Survey& survey, std::optional<double> precision, int refinement) {
+ooc::Lattice chooseLattice(const Survey& survey, const std::string& inputName,
+                           std::optional<double> precision, int refinement) {
     const Vec3d size = survey.bounds.max - survey.bounds.min;
     const double extent = std::max({size.x, size.y, size.z});
     if (!std::isfinite(extent)) {
-        throw Error("", "", "coordinates up to 1e308 leave no finite extent", "remove the outliers");
+        throw Error(inputName, "", "coordinates up to 1e308 leave no finite extent",
+                    "remove the outliers");
     }
     // A plane, a line or a point along the axes: any positive extent does.
-    const int extentExponent = extent > 0 ? std::ilogb(extent) + 1 : 0;  // extent < 2^extentExponent
+    const int extentExponent =
+        extent > 0 ? std::ilogb(extent) + 1 : 0;  // extent < 2^extentExponent
     const int finest = extentExponent - ooc::kMaxExtentBits + 1;
     int exponent = 0;
     if (precision) {
         exponent = std::ilogb(*precision);
         if (exponent < finest) {
-            throw Error("", "", "--precision is finer than 2^-29 of the extent of the input",
+            throw Error(inputName, "", "--precision is finer than 2^-29 of the extent of the input",
                         "use " + std::to_string(std::ldexp(1.0, finest)) + " or more");
         }
     } else {
@@ -108,15 +120,18 @@ ooc::Lattice chooseLattice(const Survey& survey, std::optional<double> precision
     lattice.stepExponent = exponent;
     const double step = lattice.step();
     lattice.origin = glm::floor(survey.bounds.min / step) * step;
-    const double farthest = std::max(glm::length(survey.bounds.min), glm::length(survey.bounds.max));
+    const double farthest =
+        std::max(glm::length(survey.bounds.min), glm::length(survey.bounds.max));
     if (farthest / step >= 0x1p52) {
-        throw Error("", "", "the model lies so far from the origin that double cannot tell its points apart",
-                    "move it nearer (INPUT@move=X:Y:Z) or give a coarser --precision");
+        throw Error(
+            inputName, "",
+            "the model lies so far from the origin that double cannot tell its points apart",
+            "move it nearer (INPUT@move=X:Y:Z) or give a coarser --precision");
     }
     const Vec3i last = lattice.snap(survey.bounds.max);
     const int32_t largest = std::max({last.x, last.y, last.z, 1});
-    lattice.extentBits = 
-        std::clamp(static_cast<int>(std::bit_width(static_cast<uint32_t>(largest))), 1, ooc::kMaxExtentBits);
+    lattice.extentBits = std::clamp(
+        static_cast<int>(std::bit_width(static_cast<uint32_t>(largest))), 1, ooc::kMaxExtentBits);
     return lattice;
 }
 

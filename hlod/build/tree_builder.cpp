@@ -9,12 +9,14 @@
 namespace pagoda::hlod {
 namespace {
 
-// Each level holds about a quarter of the triangles of the one below: an octree over a surface has four
-// children a node, so nodes stay equally full.
+// Each level holds about a quarter of the triangles of the one below: an octree over a surface has
+// four children a node, so nodes stay equally full.
 constexpr uint32_t kReduction = 4;
 
 // A leaf's error: the snap moved each point by at most half a lattice diagonal.
-double snapErrorSteps() { return std::sqrt(3.0) / 2; }
+double snapErrorSteps() {
+    return std::sqrt(3.0) / 2;
+}
 
 // Interleaved bits of a lattice point, for sorting what a cell cannot tell apart.
 uint64_t mortonKey(const Vec3i& point) {
@@ -57,7 +59,8 @@ std::vector<SoupTriangle> TreeBuilder::unpack(const ooc::PageMesh& mesh) const {
         for (size_t corner = 0; corner < 3; ++corner) {
             const uint32_t vertex = mesh.indices[3 * i + corner];
             triangles[i].corners[corner] = mesh.positions[vertex];
-            triangles[i].colours[corner] = mesh.colours.empty() ? mesh.constantColour : mesh.colours[vertex];
+            triangles[i].colours[corner] =
+                mesh.colours.empty() ? mesh.constantColour : mesh.colours[vertex];
             if (!mesh.normals.empty()) triangles[i].normals[corner] = mesh.normals[vertex];
         }
     }
@@ -85,13 +88,13 @@ TreeBuilder::Subtree TreeBuilder::buildLeaf(ooc::NodeId id, std::span<const Soup
     leaf.record.id = id;
     leaf.record.errorModelUnits = roundedUp(snapErrorSteps() * settings_.lattice.step());
     leaf.record.subtreeTriangles = numbers.size();
-    leaf.record = store_.add(leaf.record, assemblePage(leaf.triangles, frameOf(id.cell()),
-                                                       settings_.isTranslucent));
+    leaf.record = store_.add(
+        leaf.record, assemblePage(leaf.triangles, frameOf(id.cell()), settings_.isTranslucent));
     return leaf;
 }
 
-// By (centroid's Morton number, input order), in as few leaves as the budget allows; all slots evenly when
-// it does not (only for triangles that no cell can part).
+// By (centroid's Morton number, input order), in as few leaves as the budget allows; all slots
+// evenly when it does not (only for triangles that no cell can part).
 std::vector<TreeBuilder::Subtree> TreeBuilder::cutExtraLeaves(ooc::NodeId cell,
                                                               std::span<const SoupTriangle> all,
                                                               Numbers numbers) {
@@ -149,7 +152,9 @@ TreeBuilder::Subtree TreeBuilder::buildInner(ooc::NodeId cell, std::vector<Subtr
     const CellFrame frame = frameOf(cell);
     Subtree node;
     node.record.id = cell;
-    std::vector<SoupTriangle> merged;
+    std::vector<SoupTriangle> merged, finer;
+    const bool anyProxy = std::any_of(children.begin(), children.end(),
+                                      [](const Subtree& child) { return !child.proxy.empty(); });
     double childError = 0;
     uint32_t extraLeaves = 0, mask = 0;
     for (Subtree& child : children) {
@@ -162,25 +167,34 @@ TreeBuilder::Subtree TreeBuilder::buildInner(ooc::NodeId cell, std::vector<Subtr
         node.record.subtreeTriangles += child.record.subtreeTriangles;
         childError = std::max(childError, child.record.errorModelUnits);
         merged.insert(merged.end(), child.triangles.begin(), child.triangles.end());
+        if (anyProxy) {
+            const std::vector<SoupTriangle>& finest =
+                child.proxy.empty() ? child.triangles : child.proxy;
+            finer.insert(finer.end(), finest.begin(), finest.end());
+        }
         child.triangles = {};
+        child.proxy = {};
     }
     node.record.childMask = static_cast<uint16_t>(mask | (extraLeaves << 8));
 
     const auto count = static_cast<uint32_t>(merged.size());
     const uint32_t least = settings_.nodeTriangles / kReduction;
-    SimplifyResult simple = simplifyNode({.triangles = merged,
-                                          .cell = frame,
-                                          .targetTriangles = std::clamp(count / kReduction, least,
-                                                                        settings_.nodeTriangles),
-                                          .budgetTriangles = settings_.nodeTriangles,
-                                          .isTranslucent = &settings_.isTranslucent});
+    SimplifyResult simple = simplifyNode(
+        {.triangles = merged,
+         .finer = finer,
+         .cell = frame,
+         .targetTriangles = std::clamp(count / kReduction, least, settings_.nodeTriangles),
+         .budgetTriangles = settings_.nodeTriangles,
+         .isTranslucent = &settings_.isTranslucent});
     bentWedges_ += simple.bentWedges;
     if (simple.isSloppy) node.record.flags |= ooc::kNodeSloppy;
     if (simple.isStuck) node.record.flags |= ooc::kNodeStuck;
     const double distance = sampledDistance(merged, simple.triangles, frame.origin);
     node.record.errorModelUnits = roundedUp(childError + distance * settings_.lattice.step());
     node.triangles = std::move(simple.triangles);
-    node.record = store_.add(node.record, assemblePage(node.triangles, frame, settings_.isTranslucent));
+    node.proxy = std::move(simple.proxy);
+    node.record =
+        store_.add(node.record, assemblePage(node.triangles, frame, settings_.isTranslucent));
     return node;
 }
 
@@ -188,7 +202,8 @@ void TreeBuilder::buildSubtree(ooc::NodeId cell, std::span<const std::byte> soup
     const std::vector<SoupTriangle> all = unpack(soup);
     Numbers numbers(all.size());
     for (uint32_t i = 0; i < numbers.size(); ++i) numbers[i] = i;
-    (void)buildCell(cell, all, std::move(numbers));
+    const Subtree root = buildCell(cell, all, std::move(numbers));
+    if (!root.proxy.empty()) store_.addProxy(cell, root.proxy);
 }
 
 void TreeBuilder::buildExtraLeaves(ooc::NodeId cell, std::span<const std::byte> soup) {
@@ -203,11 +218,14 @@ void TreeBuilder::buildTopNode(ooc::NodeId cell) {
     const auto take = [&](ooc::NodeId id) {
         if (!store_.contains(id)) return;
         const ooc::NodeRecord record = store_.find(id);
-        children.push_back({.record = record, .triangles = unpack(store_.readMesh(record))});
+        children.push_back({.record = record,
+                            .triangles = unpack(store_.readMesh(record)),
+                            .proxy = store_.readProxy(id)});
     };
     for (uint32_t octant = 0; octant < 8; ++octant) take(cell.child(octant));
     for (uint32_t slot = 1; slot <= ooc::kMaxExtraLeaves; ++slot) take(cell.extra(slot));
-    (void)buildInner(cell, std::move(children));
+    const Subtree node = buildInner(cell, std::move(children));
+    if (!node.proxy.empty()) store_.addProxy(cell, node.proxy);
 }
 
 }  // namespace pagoda::hlod

@@ -1,6 +1,6 @@
 // tree_builder.h: one piece in memory -> its nodes, bottom up; and the cells above pieces.
-// DESIGN.md section 4, steps 4 and 5. Free of shared state but for the NodeStore: pieces may be built on
-// any number of threads, in any order, and give the same nodes.
+// DESIGN.md section 4, steps 4 and 5. Free of shared state but for the NodeStore: pieces may be
+// built on any number of threads, in any order, and give the same nodes.
 #pragma once
 
 #include "hlod/build/assemble.h"
@@ -26,7 +26,8 @@ struct TreeSettings {
 
 class TreeBuilder {
 public:
-    TreeBuilder(const TreeSettings& settings, NodeStore& store) : settings_(settings), store_(store) {}
+    TreeBuilder(const TreeSettings& settings, NodeStore& store)
+        : settings_(settings), store_(store) {}
 
     // `soup`: records of the piece in settings.layout. Builds the whole subtree of `cell`.
     void buildSubtree(ooc::NodeId cell, std::span<const std::byte> soup);
@@ -41,6 +42,7 @@ private:
     struct Subtree {  // what a parent needs of a finished child
         ooc::NodeRecord record;
         std::vector<SoupTriangle> triangles;
+        std::vector<SoupTriangle> proxy;  // SimplifyResult::proxy
     };
     using Numbers = std::vector<uint32_t>;
 
@@ -49,7 +51,8 @@ private:
     [[nodiscard]] CellFrame frameOf(ooc::NodeId cell) const;
     Subtree buildCell(ooc::NodeId cell, std::span<const SoupTriangle> all, Numbers numbers);
     Subtree buildLeaf(ooc::NodeId id, std::span<const SoupTriangle> all, const Numbers& numbers);
-    std::vector<Subtree> cutExtraLeaves(ooc::NodeId cell, std::span<const SoupTriangle> all, Numbers numbers);
+    std::vector<Subtree> cutExtraLeaves(ooc::NodeId cell, std::span<const SoupTriangle> all,
+                                        Numbers numbers);
     Subtree buildInner(ooc::NodeId cell, std::vector<Subtree> children);
 
     const TreeSettings& settings_;

@@ -1,5 +1,5 @@
-// vertex_table.h: gives equal keys equal numbers, in order of first sight. Open addressing, made for
-// pages of some ten thousand corners: one allocation, reused.
+// vertex_table.h: gives equal keys equal numbers, in order of first sight. Open addressing, made
+// for pages of some ten thousand corners: one allocation, reused.
 #pragma once
 
 #include <bit>

@@ -1,0 +1,22 @@
+// cluster.h: vertex clustering for nodes whose parts cannot merge by edge collapse.
+// Rossignac and Borrel 1993 (one representative a grid cell), with quadric-optimal representatives
+// (Lindstrom 2000), mean colours, and two repairs of what clustering loses: rods, and a shrinking
+// outline.
+#pragma once
+
+#include "hlod/build/simplify.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace pagoda::hlod {
+
+// At most `budget` triangles of the finest uniform grid that keeps to it (within 2% of the cell
+// size). Opaque and translucent surfaces never share a cell. Empty when nothing spans three cells
+// at such a size.
+[[nodiscard]] std::vector<SoupTriangle> clusterToBudget(std::span<const SoupTriangle> triangles,
+                                                        uint32_t budget, int extentBits,
+                                                        const std::vector<bool>& isTranslucent);
+
+}  // namespace pagoda::hlod

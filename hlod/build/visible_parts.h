@@ -1,0 +1,20 @@
+// visible_parts.h: which triangles of a mesh can be seen from outside it.
+// A node is drawn as a stand-in only while the eye is outside its box, so that what no direction
+// shows (inner walls, the undersides of bricks) need not take triangles from what is seen.
+#pragma once
+
+#include "hlod/build/soup.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace pagoda::hlod {
+
+// Pixels each triangle covers in parallel projections along the 26 directions to the faces, edges
+// and corners of a cube, `resolution` pixels along the mesh's longest side. Two-sided, exact to a
+// pixel; ties go to the lower number.
+[[nodiscard]] std::vector<uint32_t> countVisiblePixels(std::span<const SoupTriangle> triangles,
+                                                       int resolution);
+
+}  // namespace pagoda::hlod
