@@ -35,7 +35,7 @@ uint64_t hashOf(const CollectedScene& scene) {
 
 TEST(Generate, EveryKindMeetsTheTriangleCountWithinFivePercent) {
     for (const Generator& generator : generators()) {
-        for (const uint64_t wanted : {uint64_t{60'000}, uint64_t{400'000}}) {
+        for (const uint64_t wanted : {uint64_t{100'000}, uint64_t{400'000}}) {
             const Made made = make(std::string(generator.name).c_str(), wanted);
             EXPECT_NEAR(static_cast<double>(made.scene.triangleCount()),
                         static_cast<double>(wanted), 0.05 * static_cast<double>(wanted))
@@ -58,9 +58,9 @@ TEST(Generate, ATinyCountIsRefusedWithTheLeastThatGoes) {
 TEST(Generate, TheSameSeedGivesTheSameTrianglesAndAnotherSeedOthers) {
     for (const Generator& generator : generators()) {
         const std::string kind(generator.name);
-        const uint64_t first = hashOf(make(kind.c_str(), 60'000, 5).scene);
-        EXPECT_EQ(first, hashOf(make(kind.c_str(), 60'000, 5).scene)) << kind;
-        EXPECT_NE(first, hashOf(make(kind.c_str(), 60'000, 6).scene)) << kind;
+        const uint64_t first = hashOf(make(kind.c_str(), 100'000, 5).scene);
+        EXPECT_EQ(first, hashOf(make(kind.c_str(), 100'000, 5).scene)) << kind;
+        EXPECT_NE(first, hashOf(make(kind.c_str(), 100'000, 6).scene)) << kind;
     }
 }
 
@@ -104,7 +104,7 @@ TEST(Generate, NoTwoFacesOfTheScenesLieOnEachOther) {
 
 TEST(Generate, InsideTheScenesAtMostOneTriangleInTwentyIsSeen) {
     for (const char* kind : {"powerplant", "interior"}) {
-        const Made made = make(kind, 400'000);
+        const Made made = make(kind, 500'000);
         const SceneReport report = measureScene(made.scene, made.views);
         EXPECT_GE(report.views, 16u);
         EXPECT_GT(report.visible.medianVisible, 50) << kind << ": the eye is inside something";
@@ -118,7 +118,7 @@ TEST(Generate, InsideTheScenesAtMostOneTriangleInTwentyIsSeen) {
 TEST(Generate, ObjectsHaveNamesAndParents) {
     for (const char* kind : {"powerplant", "city", "interior"}) {
         const Made made = make(kind, 250'000);
-        EXPECT_GT(made.scene.objects.size(), 100u);
+        EXPECT_GT(made.scene.objects.size(), 50u);
         size_t withParent = 0;
         for (const ooc::ObjectInfo& object : made.scene.objects) {
             EXPECT_FALSE(object.name.empty());

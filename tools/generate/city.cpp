@@ -83,6 +83,10 @@ void addFacade(House& house, const Frame& at, double length, const FacadeStyle& 
         const double wide = isStreet ? pitch * 0.38 : half;
         shops.push_back({middle - wide, isStreet ? 0.45 : 1.0, middle + wide, style.ground - 0.7});
     }
+    if (!kit.keeps(house.random)) {  // a blind wall, for the sake of few triangles
+        windows.clear();
+        shops.clear();
+    }
     std::vector<Rectangle> holes = windows;
     holes.insert(holes.end(), shops.begin(), shops.end());
     kit.paint(style.wall);

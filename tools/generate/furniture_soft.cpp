@@ -119,9 +119,9 @@ void Furnisher::picture(const Frame& at, double width, double height) {
     kit.box(at, {-width / 2 + 0.005, -0.022, 0.005}, {width / 2 - 0.005, 0.01, height - 0.005});
     for (int i = 0; i < 4; ++i) {  // shapes on the canvas
         kit.paint(colours.paints[random.integer(0, 3)]);
-        const double x = random.range(-0.3, 0.1) * width, z = random.range(0.12, 0.5) * height;
+        const double x = (-0.42 + 0.21 * i) * width, z = random.range(0.12, 0.5) * height;
         kit.box(at, {x, -0.011 - 0.0012 * i, z},
-                {x + random.range(0.1, 0.28) * width, 0.0125 + 0.0018 * i,
+                {x + random.range(0.08, 0.19) * width, 0.0125 + 0.0018 * i,
                  z + random.range(0.1, 0.35) * height});
     }
 }

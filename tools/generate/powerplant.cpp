@@ -20,6 +20,12 @@ constexpr double kLift = 0.005;
 constexpr double kSlab = 0.26, kInner = 0.22, kOuter = 0.36;
 constexpr double kDoor = 1.3, kDoorHeight = 2.25;
 
+// What grows with the triangles asked for, besides detail.
+struct Layout {
+    uint64_t units;
+    int storeys;  // of the boiler house
+};
+
 // A grid of rooms on one storey.
 struct Storey {
     std::string name;
@@ -168,7 +174,7 @@ void fillRoom(Site& site, const Storey& storey, int i, int j) {
     for (unsigned side = 0; side < 4; ++side) {
         if (storey.isShaft(sides[side][0], sides[side][1])) room.wallMask &= ~(1u << side);
     }
-    addPipeRack(room, tag);
+    if (site.kit.keeps(random)) addPipeRack(room, tag);
     if (site.kit.keeps(random)) addCableTrays(room, tag);
     if (site.kit.keeps(random)) addDucts(room, tag);
     if (site.kit.keeps(random)) addFittings(room, tag);
@@ -189,13 +195,13 @@ void addStorey(Site site, const Storey& storey, bool isGround) {
 }
 
 constexpr double kBoilerX = 80, kCell = 12.6, kBoilerStorey = 7.0;
-constexpr int kBoilerCells = 4, kBoilerStoreys = 6;
+constexpr int kBoilerCells = 4, kMaxBoilerStoreys = 6;
 constexpr double kHallX = 69.6, kHallY = 34.8, kDeck = 7.0, kHallTop = 26;
 
-void addBoilerHouse(const Site& site) {
+void addBoilerHouse(const Site& site, int storeys) {
     site.kit.beginGroup("Boiler house");
     const Frame at = site.at.moved({kBoilerX, 0, 0});
-    for (int level = 0; level < kBoilerStoreys; ++level) {
+    for (int level = 0; level < storeys; ++level) {
         const Storey storey{.name = fmt::format("B{}", level),
                             .at = at.moved({0, 0, level * kBoilerStorey}),
                             .columns = kBoilerCells,
@@ -209,7 +215,7 @@ void addBoilerHouse(const Site& site) {
                    site.random.fork(100u + static_cast<uint64_t>(level))},
                   storey, level == 0);
     }
-    const double side = kBoilerCells * kCell, top = kBoilerStoreys * kBoilerStorey;
+    const double side = kBoilerCells * kCell, top = storeys * kBoilerStorey;
     site.kit.beginObject("Boiler house roof");
     site.kit.paint(site.colours.dark);
     addSlab(site.kit, at.moved({0, 0, top}), {-0.3, -0.3, side + 0.3, side + 0.3}, kSlab);
@@ -251,13 +257,13 @@ void addTurbineHall(const Site& site) {
     site.kit.endGroup();
 }
 
-void buildPlant(SceneKit& kit, uint64_t units, uint64_t seed) {
+void buildPlant(SceneKit& kit, const Layout& layout, uint64_t seed) {
     const PlantPalette colours(kit);
-    for (uint64_t unit = 0; unit < units; ++unit) {
+    for (uint64_t unit = 0; unit < layout.units; ++unit) {
         kit.beginGroup(fmt::format("Unit {}", unit + 1));
         const Site site{kit, colours, Frame{}.moved({0, static_cast<double>(unit) * kUnitPitch, 0}),
                         Random(seed).fork(unit)};
-        addBoilerHouse(site);
+        addBoilerHouse(site, layout.storeys);
         addTurbineHall(site);
         kit.beginGroup("Surroundings");
         addSurroundings({kit, colours, site.at, site.random.fork(21)});
@@ -268,16 +274,17 @@ void buildPlant(SceneKit& kit, uint64_t units, uint64_t seed) {
 }
 
 // Round the boiler on every second storey, and through the rooms under the turbines.
-SceneViews plantViews() {
+SceneViews plantViews(const Layout& layout) {
     SceneViews views;
     const double eye = 1.7, side = kBoilerCells * kCell, half = kCell / 2;
     const double near = half, far = side - half;
-    for (int level = 0; level < kBoilerStoreys; level += 2) {
+    for (int k = 0; k < 3; ++k) {
+        const int level = std::min(2 * k, layout.storeys - 1);
         const double z = level * kBoilerStorey + eye;
         const Vec3d ring[4] = {{near, near, z}, {far, near, z}, {far, far, z}, {near, far, z}};
-        for (int k = 0; k < 4; ++k) {
-            const Vec3d from = ring[k] + Vec3d(kBoilerX, 0, 0);
-            const Vec3d to = ring[(k + 1) % 4] + Vec3d(kBoilerX, 0, 0);
+        for (int corner = 0; corner < 4; ++corner) {
+            const Vec3d from = ring[corner] + Vec3d(kBoilerX, 0, 0);
+            const Vec3d to = ring[(corner + 1) % 4] + Vec3d(kBoilerX, 0, 0);
             views.walk.push_back({from + 0.06 * (to - from), to - Vec3d(0, 0, 0.4)});
         }
     }
@@ -296,13 +303,15 @@ SceneViews plantViews() {
 }  // namespace
 
 SceneViews generatePowerplant(ooc::TriangleSink& sink, const GenerateOptions& options) {
-    const uint64_t units =
-        std::max<uint64_t>(1, (options.triangles + kUnitTriangles / 2) / kUnitTriangles);
+    const Layout layout{
+        .units = std::max<uint64_t>(1, (options.triangles + kUnitTriangles / 2) / kUnitTriangles),
+        .storeys = static_cast<int>(
+            std::clamp<uint64_t>(options.triangles / 80'000, 1, kMaxBoilerStoreys))};
     const double detail = findDetail(options.triangles, "powerplant",
-                                     [&](SceneKit& kit) { buildPlant(kit, units, options.seed); });
+                                     [&](SceneKit& kit) { buildPlant(kit, layout, options.seed); });
     SceneKit kit(&sink, detail);
-    buildPlant(kit, units, options.seed);
-    return plantViews();
+    buildPlant(kit, layout, options.seed);
+    return plantViews(layout);
 }
 
 }  // namespace pagoda::tools

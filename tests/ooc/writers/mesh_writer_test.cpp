@@ -128,7 +128,7 @@ std::string textOf(const fs::path& path) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-TEST(MeshWriter, PlyComesBackExactlyAndInOrder) {
+TEST(MeshWriter, PlyComesBackExactly) {
     const Folder folder;
     for (const bool isFloat : {true, false}) {
         const Model model({.origin = Vec3d(isFloat ? 0.0 : 5e6),
@@ -136,13 +136,14 @@ TEST(MeshWriter, PlyComesBackExactlyAndInOrder) {
                            .hasColours = true,
                            .hasNormals = true});
         model.write(folder.path / "m.ply");
-        const CollectingSink got = readBack(folder.path / "m.ply"), wanted = given(model);
-        expectSameCorners(got.triangles, wanted.triangles, 0.0);
-        for (size_t t = 0; t < got.triangles.size(); ++t) {
+        // The reader gives translucent triangles apart, so the order is not the file's.
+        const auto got = sorted(readBack(folder.path / "m.ply").triangles);
+        const auto wanted = sorted(given(model).triangles);
+        expectSameCorners(got, wanted, 0.0);
+        for (size_t t = 0; t < got.size(); ++t) {
             // PLY has no materials: their colours are at the vertices.
             for (size_t i = 0; i < 3; ++i) {
-                ASSERT_EQ(got.triangles[t].colour[i] & 0xFFFFFFu,
-                          wanted.triangles[t].colour[i] & 0xFFFFFFu);
+                ASSERT_EQ(got[t].colour[i], wanted[t].colour[i]);
             }
         }
         const std::string header = textOf(folder.path / "m.ply").substr(0, 512);
