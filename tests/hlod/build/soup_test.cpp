@@ -11,10 +11,12 @@ TEST(Soup, homeDepthIsTheFirstDepthWhoseCellsAreSmallerThanFourTimesTheLongestEd
     std::mt19937 random(1);
     for (int round = 0; round < 20000; ++round) {
         const int extentBits = 1 + static_cast<int>(random() % 30);
-        const uint32_t mask = (uint32_t{1} << (1 + random() % static_cast<uint32_t>(extentBits))) - 1;
+        const uint32_t mask =
+            (uint32_t{1} << (1 + random() % static_cast<uint32_t>(extentBits))) - 1;
         std::array<Vec3i, 3> corners;
         for (Vec3i& corner : corners) {
-            for (int axis = 0; axis < 3; ++axis) corner[axis] = static_cast<int32_t>(random() & mask);
+            for (int axis = 0; axis < 3; ++axis)
+                corner[axis] = static_cast<int32_t>(random() & mask);
         }
         if (hasNoArea(corners)) continue;
         long double longest = 0;
@@ -32,8 +34,10 @@ TEST(Soup, homeDepthIsTheFirstDepthWhoseCellsAreSmallerThanFourTimesTheLongestEd
 
 TEST(Soup, noAreaIsExactAtTheEdgeOfTheLattice) {
     const int32_t far = 1 << 30;
-    EXPECT_TRUE(hasNoArea({Vec3i{0, 0, 0}, Vec3i{far, far, far}, Vec3i{far / 2, far / 2, far / 2}}));
-    EXPECT_FALSE(hasNoArea({Vec3i{0, 0, 0}, Vec3i{far, far, far}, Vec3i{far / 2, far / 2, far / 2 + 1}}));
+    EXPECT_TRUE(
+        hasNoArea({Vec3i{0, 0, 0}, Vec3i{far, far, far}, Vec3i{far / 2, far / 2, far / 2}}));
+    EXPECT_FALSE(
+        hasNoArea({Vec3i{0, 0, 0}, Vec3i{far, far, far}, Vec3i{far / 2, far / 2, far / 2 + 1}}));
     EXPECT_FALSE(hasNoArea({Vec3i{0, 0, 0}, Vec3i{far, 0, 0}, Vec3i{0, 1, 0}}));
     EXPECT_TRUE(hasNoArea({Vec3i{1, 2, 3}, Vec3i{1, 2, 3}, Vec3i{5, 5, 5}}));
 }

@@ -7,8 +7,8 @@
 namespace pagoda::hlod {
 namespace {
 
-// Brute force by another route: the minimum over a fine barycentric grid bounds the distance from above, the
-// plane and the three edges' distances from below.
+// Brute force by another route: the minimum over a fine barycentric grid bounds the distance from
+// above, the plane and the three edges' distances from below.
 double segmentDistance(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
     const Vec3d ab = b - a;
     const double t = std::clamp(glm::dot(p - a, ab) / glm::dot(ab, ab), 0.0, 1.0);
@@ -17,7 +17,9 @@ double segmentDistance(const Vec3d& p, const Vec3d& a, const Vec3d& b) {
 
 double triangleDistance(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     const Vec3d n = glm::cross(b - a, c - a);
-    const auto inside = [&](const Vec3d& u, const Vec3d& v) { return glm::dot(glm::cross(v - u, p - u), n) >= 0; };
+    const auto inside = [&](const Vec3d& u, const Vec3d& v) {
+        return glm::dot(glm::cross(v - u, p - u), n) >= 0;
+    };
     if (inside(a, b) && inside(b, c) && inside(c, a)) {
         return std::abs(glm::dot(p - a, n)) / glm::length(n);
     }
@@ -43,9 +45,10 @@ TEST(SurfaceDistance, equalsTheLeastDistanceOverAllTriangles) {
             const Vec3f point(number(), number(), number());
             double expected = 1e30;
             for (uint32_t i = 0; i < count; ++i) {
-                expected = std::min(expected,
-                                    triangleDistance(Vec3d(point), Vec3d(positions[3 * i]),
-                                                     Vec3d(positions[3 * i + 1]), Vec3d(positions[3 * i + 2])));
+                expected =
+                    std::min(expected, triangleDistance(Vec3d(point), Vec3d(positions[3 * i]),
+                                                        Vec3d(positions[3 * i + 1]),
+                                                        Vec3d(positions[3 * i + 2])));
             }
             const double got = std::sqrt(static_cast<double>(surface.squaredDistance(point, near)));
             ASSERT_NEAR(got, expected, 1e-3 + 1e-4 * expected);  // float coordinates up to 110

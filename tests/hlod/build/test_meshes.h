@@ -18,7 +18,8 @@ struct Mesh {
     std::vector<std::array<uint32_t, 3>> triangles;
 };
 
-// A closed torus about the origin (R 1, r 0.4), rough along its normal, of 2 * around * across triangles.
+// A closed torus about the origin (R 1, r 0.4), rough along its normal, of 2 * around * across
+// triangles.
 inline Mesh roughTorus(uint32_t around, uint32_t across, double roughness = 0.01) {
     Mesh mesh;
     std::mt19937 random(7);
@@ -64,7 +65,9 @@ public:
     ~TemporaryFolder() { std::filesystem::remove_all(path_); }
     TemporaryFolder(const TemporaryFolder&) = delete;
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
+        return path_ / name;
+    }
 
 private:
     std::filesystem::path path_;
