@@ -12,8 +12,11 @@
 #include "ooc/store/database_writer.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <system_error>
 
 namespace pagoda::hlod {
 namespace {
@@ -22,6 +25,11 @@ namespace {
 constexpr uint64_t kWorkerBytes = kPieceTriangles * (64 + 68 + 8) + (uint64_t{24} << 20);
 // Everything that does not grow with the number of workers.
 constexpr uint64_t kFixedBytes = uint64_t{64} << 20;
+
+std::filesystem::path targetFolder(const BuildOptions& options) {
+    const std::filesystem::path parent = options.target.parent_path();
+    return parent.empty() ? std::filesystem::path(".") : parent;
+}
 
 std::filesystem::path scratchFolder(const BuildOptions& options) {
     return options.scratchFolder.empty() ? targetFolder(options) : options.scratchFolder;
@@ -34,11 +42,6 @@ size_t workerCount(const BuildOptions& options) {
                                  ? (options.memoryBytes - kFixedBytes) / kWorkerBytes
                                  : 1;
     return static_cast<size_t>(std::clamp<uint64_t>(fitting, 1, wanted));
-}
-
-std::filesystem::path targetFolder(const BuildOptions& options) {
-    const std::filesystem::path parent = options.target.parent_path();
-    return parent.empty() ? std::filesystem::path(".") : parent;
 }
 
 // The target is written last: what forbids it is said before hours of work, not after.
@@ -98,23 +101,25 @@ std::string listed(const std::map<std::string, uint64_t>& counts) {
                               const std::map<std::string, uint64_t>& ignored) {
     uint64_t lost = 0;
     for (const auto& [reason, count] : dropped) lost += count;
-    std::string what = lost == 0 ? "no triangles"
-                                 : fmt::format("no triangle of {} can be used: {}", lost, listed(dropped));
+    std::string what =
+        lost == 0 ? "no triangles"
+                  : fmt::format("no triangle of {} can be used: {}", lost, listed(dropped));
     if (!ignored.empty()) what += "; ignored: " + listed(ignored);
     throw Error(input, "", what, "name a file that holds a surface");
 }
 
-[[noreturn]] void refuseOutliers(const std::string& input, const Survey& survey,
-                                 uint64_t collapsed, const Box3d& collapsedBounds) {
+[[noreturn]] void refuseOutliers(const std::string& input, const Survey& survey, uint64_t collapsed,
+                                 const Box3d& collapsedBounds) {
     const auto text = [](const Box3d& box) {
         return fmt::format("({:g} {:g} {:g}) to ({:g} {:g} {:g})", box.min.x, box.min.y, box.min.z,
                            box.max.x, box.max.y, box.max.z);
     };
-    throw Error(input, "",
-                fmt::format("{} of {} triangles are smaller than 2^-29 of the extent: they lie in {}, "
-                            "the whole spans {}",
-                            collapsed, survey.triangles, text(collapsedBounds), text(survey.bounds)),
-                "remove the outliers that stretch the bounds, or accept the loss with --precision");
+    throw Error(
+        input, "",
+        fmt::format("{} of {} triangles are smaller than 2^-29 of the extent: they lie in {}, "
+                    "the whole spans {}",
+                    collapsed, survey.triangles, text(collapsedBounds), text(survey.bounds)),
+        "remove the outliers that stretch the bounds, or accept the loss with --precision");
 }
 
 // Reads and snaps; makes the lattice finer while too much collapses on it.
@@ -126,7 +131,8 @@ Intake takeInAtFineEnoughStep(const BuildOptions& options, InputSet& inputs, con
     Box3d collapsedBounds;
     for (int refinement = 0;; refinement += 3) {
         const ooc::Lattice before = lattice;
-        lattice = chooseLattice(survey, inputName(options), options.precisionModelUnits, refinement);
+        lattice =
+            chooseLattice(survey, inputName(options), options.precisionModelUnits, refinement);
         if (refinement > 0 && lattice == before) {
             refuseOutliers(inputName(options), survey, collapsed, collapsedBounds);
         }
@@ -247,17 +253,11 @@ BuildReport buildDatabase(const BuildOptions& options, Progress& progress) {
     report.inputBytes = inputs.totalBytes();
     const Survey survey = surveyInputs(inputs, progress);
     clock.mark("survey");
-    if (survey.bounds.isEmpty()) {
-        throw Error(inputName(options), "", "no triangles", "name a file that holds a surface");
-    }
+    if (survey.bounds.isEmpty()) refuseEmpty(inputName(options), survey.dropped, survey.ignored);
     ooc::Lattice lattice;
     Intake intake = takeInAtFineEnoughStep(options, inputs, survey, lattice, progress);
     clock.mark("read and snap");
-    if (intake.accepted == 0) {
-        throw Error(inputName(options), "",
-                    fmt::format("no triangle of {} has an area", intake.trianglesIn),
-                    "name a file that holds a surface");
-    }
+    if (intake.accepted == 0) refuseEmpty(inputName(options), intake.dropped, intake.ignored);
     report.trianglesIn = intake.trianglesIn;
     report.triangles = intake.accepted;
     report.dropped = intake.dropped;

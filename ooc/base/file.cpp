@@ -23,7 +23,9 @@ constexpr size_t kMaxIoBytes = size_t{1} << 30;          // Linux moves at most 
     const int code = errno;
     std::string remedy;
     if (code == ENOSPC || code == EDQUOT) {
-        remedy = "free disk space or name another folder with --scratch";
+        remedy = "free disk space, or name a folder on another disk (for scratch: --scratch)";
+    } else if (code == EFBIG) {
+        remedy = "the limit is the file system's, or set with ulimit -f";
     } else if (code == EACCES || code == EPERM || code == EROFS) {
         remedy = "check the permissions";
     } else if (code == ENOENT || code == ENOTDIR) {
@@ -33,7 +35,9 @@ constexpr size_t kMaxIoBytes = size_t{1} << 30;          // Linux moves at most 
                 remedy);
 }
 
-std::string at(uint64_t offset) { return "byte " + std::to_string(offset); }
+std::string at(uint64_t offset) {
+    return "byte " + std::to_string(offset);
+}
 
 }  // namespace
 
@@ -44,7 +48,8 @@ File::~File() {
 File::File(File&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)),
       appendedBytes_(std::exchange(other.appendedBytes_, 0)),
-      path_(std::move(other.path_)) {}
+      path_(std::move(other.path_)) {
+}
 
 File& File::operator=(File&& other) noexcept {
     std::swap(descriptor_, other.descriptor_);
@@ -72,6 +77,9 @@ File File::create(const std::filesystem::path& path) {
 }
 
 File File::createScratch(const std::filesystem::path& folder) {
+    // Without a name from the start, where the file system can: nothing to find after kill -9.
+    const int nameless = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+    if (nameless >= 0) return File(nameless, folder.string() + " (scratch)");
     std::string name = (folder / ".pagoda-scratch-XXXXXX").string();
     const int descriptor = ::mkostemp(name.data(), O_CLOEXEC);
     if (descriptor < 0) fail(folder.string(), "", "cannot create a scratch file");
@@ -159,8 +167,8 @@ void File::truncate(uint64_t sizeBytes) {
 
 void File::discard(uint64_t offset, uint64_t sizeBytes) noexcept {
     if (sizeBytes == 0) return;
-    (void)::fallocate(descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(offset),
-                      static_cast<off_t>(sizeBytes));
+    (void)::fallocate(descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
+                      static_cast<off_t>(offset), static_cast<off_t>(sizeBytes));
 }
 
 void File::sync() {
@@ -188,9 +196,12 @@ std::vector<std::byte> readWholeFile(const std::filesystem::path& path, uint64_t
 }
 
 ScratchArray::ScratchArray(const std::filesystem::path& folder)
-    : file_(File::createScratch(folder)) {}
+    : file_(File::createScratch(folder)) {
+}
 
-ScratchArray::~ScratchArray() { unmap(); }
+ScratchArray::~ScratchArray() {
+    unmap();
+}
 
 void ScratchArray::append(std::span<const std::byte> bytes) {
     buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
