@@ -21,7 +21,6 @@ void addWaterWall(Site& site, const Frame& at, double width, double z0, double z
     const double pitch = 0.34, radius = 0.125;
     const int tubes = static_cast<int>((width - 0.6) / pitch);
     for (int i = 0; i < tubes; ++i) {
-        if (!kit.keeps(site.random)) continue;
         const double x = 0.4 + i * pitch, hip = z0 + 4.5;
         const std::array<Vec3d, 4> path{Vec3d(x, 1.5, z0 + 0.3), Vec3d(x, -radius, hip),
                                         Vec3d(x, -radius, z1 - 0.6), Vec3d(x, 0.5, z1)};

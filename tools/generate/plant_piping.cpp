@@ -80,7 +80,7 @@ void addHangers(RoomSpace& room, double y0, double y1, double z, Random& random)
     for (int i = 0; i < count; ++i) {
         const double x = room.sizeX * (i + 0.5) / count + random.range(-0.2, 0.2);
         kit.box(room.at, {x - 0.05, y0, z - 0.1}, {x + 0.05, y1, z - 0.005});
-        for (const double y : {y0 + 0.66, y1 - 0.66}) {  // clear of the cable trays
+        for (const double y : {y0 + 0.74, y1 - 0.74}) {  // clear of the cable trays
             kit.rod(room.at, {x, y, z - 0.06}, {x, y, room.height + 0.012}, 0.016);
         }
     }
@@ -159,7 +159,7 @@ void addCableTrays(RoomSpace& room, const std::string& tag) {
     kit.beginObject("Cable trays " + tag);
     const double z0 = room.height - 0.62;
     for (int tray = 0; tray < 2; ++tray) {
-        const double y = (tray == 0 ? 0.21 : room.sizeY - 0.81) + random.range(0.0, 0.05);
+        const double y = (tray == 0 ? 0.31 : room.sizeY - 0.91) + random.range(0.0, 0.05);
         const double z = z0 + random.range(0.0, 0.2), w = 0.55;
         kit.paint(room.colours.galvanised);
         for (const double side : {y, y + w}) {

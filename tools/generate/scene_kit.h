@@ -68,9 +68,9 @@ public:
     // Must end the scene: the last batches are still here.
     void flush();
 
-    // True for a share of the asks that shrinks with detail below 1/3: wrap optional parts in it.
+    // True for a share of the asks that shrinks with detail below 1/4: wrap optional parts in it.
     // The answer depends on `random` alone, which advances by one either way.
-    [[nodiscard]] bool keeps(Random& random) const { return random.unit() < 3 * detail_; }
+    [[nodiscard]] bool keeps(Random& random) const { return random.unit() < 4 * detail_; }
     // Sides of a circle of that radius.
     [[nodiscard]] int sides(double radius) const;
 
