@@ -118,7 +118,9 @@ void addStairs(SceneKit& kit, const Frame& at, double width, double run, double 
         kit.box(at, {i * dx - 0.013, 0.012, (i + 1) * dz - 0.052},
                 {(i + 1) * dx + 0.017, width - 0.012, (i + 1) * dz - 0.007});
     }
-    const std::array<glm::dvec2, 4> stringer{glm::dvec2(0, -0.25), glm::dvec2(run, rise - 0.25),
+    const double toe = 0.238 * run / rise;  // where its lower edge meets the floor
+    const std::array<glm::dvec2, 5> stringer{glm::dvec2(0, -0.012), glm::dvec2(toe, -0.012),
+                                             glm::dvec2(run, rise - 0.25),
                                              glm::dvec2(run, rise + 0.015), glm::dvec2(0, 0.065)};
     for (const double y : {0.0, width}) {
         const Frame upright{at.point({0, y + 0.02, 0}), at.x, at.z, -at.y};

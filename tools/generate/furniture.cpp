@@ -233,11 +233,10 @@ void Furnisher::roundTable(const Frame& at, double radius) {
     kit.paint(colours.leaf);
     for (int i = 0; i < 7; ++i) {
         const double a = i * 2.4, lean = random.range(0.05, 0.16);
-        const std::array<Vec3d, 3> stem{
-            Vec3d(0.05, 0.02, 0.76),
-            Vec3d(0.05 + lean * 0.3 * std::cos(a), 0.02 + lean * 0.3 * std::sin(a),
-                  0.76 + height * 1.1),
-            Vec3d(0.05 + lean * std::cos(a), 0.02 + lean * std::sin(a), 0.76 + height * 1.7)};
+        const Vec3d way(std::cos(a), std::sin(a), 0);
+        const Vec3d foot = Vec3d(0.05, 0.02, 0.76 + 0.001 * i) + 0.016 * way;
+        const std::array<Vec3d, 3> stem{foot, foot + 0.3 * lean * way + Vec3d(0, 0, height * 1.1),
+                                        foot + lean * way + Vec3d(0, 0, height * 1.7)};
         kit.tube(at, stem, 0.004, 0.1);
         kit.blob(at.moved(stem[2]), {0.028, 0.028, 0.045}, 0.25, random.next());
     }
