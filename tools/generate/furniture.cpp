@@ -234,9 +234,9 @@ void Furnisher::roundTable(const Frame& at, double radius) {
     for (int i = 0; i < 7; ++i) {
         const double a = i * 2.4, lean = random.range(0.05, 0.16);
         const Vec3d way(std::cos(a), std::sin(a), 0);
-        const Vec3d foot = Vec3d(0.05, 0.02, 0.76 + 0.001 * i) + 0.016 * way;
-        const std::array<Vec3d, 3> stem{foot, foot + 0.3 * lean * way + Vec3d(0, 0, height * 1.1),
-                                        foot + lean * way + Vec3d(0, 0, height * 1.7)};
+        const Vec3d base = Vec3d(0.05, 0.02, 0.76 + 0.001 * i) + 0.016 * way;
+        const std::array<Vec3d, 3> stem{base, base + 0.3 * lean * way + Vec3d(0, 0, height * 1.1),
+                                        base + lean * way + Vec3d(0, 0, height * 1.7)};
         kit.tube(at, stem, 0.004, 0.1);
         kit.blob(at.moved(stem[2]), {0.028, 0.028, 0.045}, 0.25, random.next());
     }
