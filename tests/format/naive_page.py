@@ -31,13 +31,13 @@ class Geometry:
         self.vertices, self.triangles, flags, *origin = unpack("3I3i", data)
         need(max(self.vertices, self.triangles) <= 1 << 26 and flags < 16, "geometry: head")
         self.has_colours, self.has_normals = bool(flags & 1), bool(flags & 2)
-        wide, self.wide_indices = bool(flags & 4), bool(flags & 8)
+        self.wide, self.wide_indices = bool(flags & 4), bool(flags & 8)
         self.points, self.colours, self.normals, self.indices = [], [], [], []
         self.decoded = codec != 2
         if codec == 0:
-            positions = self._raw(data, wide)
+            positions = self._raw(data)
         elif codec == 1:
-            positions = self._meshopt(data, wide)
+            positions = self._meshopt(data)
         else:
             need(codec == 2, "geometry: codec")
             need(data[24:33] == b"DRACO\2\2\1\1", "geometry: no Draco 2.2 edgebreaker mesh")
@@ -47,9 +47,9 @@ class Geometry:
                        zip(positions[0::3], positions[1::3], positions[2::3])]
         need(all(index < self.vertices for index in self.indices), "geometry: an index too large")
 
-    def _raw(self, data, wide):
+    def _raw(self, data):
         n, at = self.vertices, 24
-        layouts = ["%d%s" % (3 * n, "I" if wide else "H"), "%dI" % n * self.has_colours,
+        layouts = ["%d%s" % (3 * n, "I" if self.wide else "H"), "%dI" % n * self.has_colours,
                    "%db" % (2 * n) * self.has_normals,
                    "%d%s" % (3 * self.triangles, "I" if self.wide_indices else "H")]
         sizes = [struct.calcsize("<" + layout) for layout in layouts]
@@ -62,10 +62,10 @@ class Geometry:
         self.normals = list(zip(normals[0::2], normals[1::2]))
         return positions
 
-    def _meshopt(self, data, wide):
+    def _meshopt(self, data):
         vertex_bytes, index_bytes = unpack("2I", data, 24)
         need(len(data) == 32 + vertex_bytes + index_bytes, "meshopt geometry: bytes")
-        position = "3I" if wide else "3H"
+        position = "3I" if self.wide else "3H"
         layout = position + "2b" * self.has_normals
         layout += "x" * (-struct.calcsize("<" + layout) % 4) + "I" * self.has_colours
         stride = struct.calcsize("<" + layout)
@@ -84,8 +84,8 @@ class Geometry:
 
     def normal(self, vertex):
         """A unit vector, or none where the triangle is to be shaded flat."""
-        u, v = self.normals[vertex] if self.has_normals else (-128, 0)
-        if u == -128:
+        u, v = self.normals[vertex] if self.has_normals else (0, -128)
+        if v == -128:
             return None
         return unfold(u / 127, v / 127)
 

@@ -91,6 +91,7 @@ class Database:
         self.sum = None  # of the leaf triangles as decoded; only when nothing is broken
         self.header = self._read_header()
         self.objects, self.materials, self.nodes = [], [], []
+        self.object_blocks = self.index_blocks = 0
         self.metadata = self._try("metadata", self._read_metadata) or {}
         self.materials = self._try("materials", self._read_materials) or []
         object_begin = self.header.index[0] + self.header.index[1]
@@ -166,6 +167,7 @@ class Database:
     def _read_objects(self, begin):
         blocks = self._blocks(self.header.object_table, begin)
         need(sum(records for _, records in blocks) == self.header.objects, "number of objects")
+        self.object_blocks = len(blocks)
         for number, (where, records) in enumerate(blocks):
             need(records == 4096 or (number == len(blocks) - 1 and 0 < records < 4096),
                  "objects of a block")
@@ -190,6 +192,7 @@ class Database:
     def _read_index(self):
         blocks = self._blocks(self.header.index, self.header.pages_end)
         need(sum(records for _, records in blocks) == self.header.nodes, "number of nodes")
+        self.index_blocks = len(blocks)
         loaded, owner = {}, {}
 
         def record(block, at, parent_block):
