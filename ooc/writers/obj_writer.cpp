@@ -3,6 +3,7 @@
 // repeats its `o` line. OBJ knows no hierarchy: parents are left out.
 #include "ooc/base/error.h"
 #include "ooc/writers/corner_welder.h"
+#include "ooc/writers/float_exact.h"
 #include "ooc/writers/target_file.h"
 #include "ooc/writers/writer_kinds.h"
 
@@ -113,7 +114,7 @@ private:
                 // A coordinate that is a float needs the digits of a float only.
                 const float single = static_cast<float>(position[axis]);
                 const char* after = axis < 2 ? " " : "";
-                out = static_cast<double>(single) == position[axis]
+                out = isFloatExact(position[axis])
                           ? fmt::format_to(out, "{}{}", single, after)
                           : fmt::format_to(out, "{}{}", position[axis], after);
             }

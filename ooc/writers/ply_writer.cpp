@@ -5,6 +5,7 @@
 // that happens with the first batch or never.
 #include "ooc/base/error.h"
 #include "ooc/writers/corner_welder.h"
+#include "ooc/writers/float_exact.h"
 #include "ooc/writers/target_file.h"
 #include "ooc/writers/writer_kinds.h"
 
@@ -125,8 +126,10 @@ private:
         layout.hasNormals |= !batch.normals.empty();
         layout.hasColours |= !batch.colours.empty() || materialColour(batch) != kWhite;
         layout.hasDoubles |=
-            !std::all_of(batch.positions.begin(), batch.positions.end(),
-                         [](const Vec3d& position) { return Vec3d(Vec3f(position)) == position; });
+            !std::all_of(batch.positions.begin(), batch.positions.end(), [](const Vec3d& position) {
+                return isFloatExact(position.x) && isFloatExact(position.y) &&
+                       isFloatExact(position.z);
+            });
         return layout;
     }
 

@@ -3,6 +3,7 @@
 
 #include "ooc/base/error.h"
 #include "ooc/base/hash.h"
+#include "ooc/writers/float_exact.h"
 #include "tools/generate/collected_scene.h"
 #include "tools/generate/scene_report.h"
 
@@ -125,6 +126,29 @@ TEST(Generate, ObjectsHaveNamesAndParents) {
             if (object.parent != ooc::ObjectInfo::kNoParent) ++withParent;
         }
         EXPECT_GT(withParent, made.scene.objects.size() / 2);
+    }
+}
+
+// So that a .ply needs no doubles. By the bits: see ooc/writers/float_exact.h.
+TEST(Generate, CoordinatesOfModelsUpTo500MetresAreFloats) {
+    struct Check final : ooc::TriangleSink {
+        uint32_t addObject(const ooc::ObjectInfo&) override { return 0; }
+        uint32_t addMaterial(const ooc::MaterialInfo&) override { return 0; }
+        void addTriangles(const ooc::TriangleBatch& batch) override {
+            for (const Vec3d& p : batch.positions) {
+                for (int axis = 0; axis < 3; ++axis)
+                    inexact += ooc::isFloatExact(p[axis]) ? 0u : 1u;
+            }
+        }
+        void dropped(ooc::DropReason, uint64_t) override {}
+        void ignored(std::string_view, uint64_t) override {}
+        void advance(uint64_t) override {}
+        uint64_t inexact = 0;
+    };
+    for (const Generator& generator : generators()) {
+        Check check;
+        (void)generator.generate(check, {.triangles = 100'000, .seed = 1});
+        EXPECT_EQ(check.inexact, 0u) << generator.name;
     }
 }
 

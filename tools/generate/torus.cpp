@@ -47,7 +47,8 @@ public:
         const Vec3d smooth = centre + kMinorRadius * out;
         const double height =
             0.45 * fractalNoise(smooth * 0.5, octaves_, seed_ + 7) + roughness_ * jitter(32);
-        return Vec3d(Vec3f(smooth + height * out));
+        // A grid of 2^-20 m: floats hold it up to 16 m from the origin.
+        return glm::round((smooth + height * out) * 0x1p20) * 0x1p-20;
     }
 
     [[nodiscard]] bool flipsDiagonal(uint32_t column, uint32_t row) const {

@@ -151,6 +151,17 @@ TEST(MeshWriter, PlyComesBackExactly) {
     }
 }
 
+TEST(MeshWriter, PlyTurnsToDoublesWhenOneCoordinateOfTheLastBatchIsNoFloat) {
+    const Folder folder;
+    for (int axis = 0; axis < 3; ++axis) {
+        Model model({});
+        model.batches.back().positions.back()[axis] = 0.1;
+        model.write(folder.path / "m.ply");
+        expectSameCorners(sorted(readBack(folder.path / "m.ply").triangles),
+                          sorted(given(model).triangles), 0.0);
+    }
+}
+
 TEST(MeshWriter, PlyOfAPlainMeshHasNeitherColoursNorNormals) {
     const Folder folder;
     const auto writer = MeshWriter::create(folder.path / "m.ply", false);
