@@ -152,4 +152,36 @@ ooc::PageMesh assemblePage(std::span<const SoupTriangle> triangles, const CellFr
     return mesh;
 }
 
+CellFrame cellFrame(ooc::NodeId cell, int extentBits) {
+    CellFrame frame{
+        .origin = Vec3i(0), .bits = extentBits - cell.depth(), .extentBits = extentBits};
+    for (int level = 0; level < cell.depth(); ++level) {
+        const auto octant = static_cast<uint32_t>(cell.path() >> (3 * level)) & 7u;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (octant & (1u << axis)) frame.origin[axis] += 1 << (frame.bits + level);
+        }
+    }
+    return frame;
+}
+
+std::vector<SoupTriangle> unpackPage(const ooc::PageMesh& mesh) {
+    std::vector<SoupTriangle> triangles(mesh.triangleCount());
+    size_t run = 0;
+    uint32_t left = mesh.runs.empty() ? 0 : mesh.runs[0].triangleCount;
+    for (size_t i = 0; i < triangles.size(); ++i) {
+        while (left == 0) left = mesh.runs[++run].triangleCount;
+        --left;
+        triangles[i].object = mesh.runs[run].object;
+        triangles[i].material = mesh.runs[run].material;
+        for (size_t corner = 0; corner < 3; ++corner) {
+            const uint32_t vertex = mesh.indices[3 * i + corner];
+            triangles[i].corners[corner] = mesh.positions[vertex];
+            triangles[i].colours[corner] =
+                mesh.colours.empty() ? mesh.constantColour : mesh.colours[vertex];
+            if (!mesh.normals.empty()) triangles[i].normals[corner] = mesh.normals[vertex];
+        }
+    }
+    return triangles;
+}
+
 }  // namespace pagoda::hlod

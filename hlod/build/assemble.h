@@ -3,6 +3,7 @@
 #pragma once
 
 #include "hlod/build/soup.h"
+#include "ooc/node_id.h"
 #include "ooc/page_mesh.h"
 
 #include <cstdint>
@@ -17,11 +18,15 @@ struct CellFrame {
     int bits = 0;     // edge = 2^bits
     int extentBits = 0;
 };
+[[nodiscard]] CellFrame cellFrame(ooc::NodeId cell, int extentBits);
 
 // Welds corners of equal position, colour and normal. `isTranslucent` by material id.
 // Deterministic: depends on the order of `triangles` only. Not empty.
 [[nodiscard]] ooc::PageMesh assemblePage(std::span<const SoupTriangle> triangles,
                                          const CellFrame& cell,
                                          const std::vector<bool>& isTranslucent);
+
+// The way back: the page's triangles in its order, every corner with its own colour and normal.
+[[nodiscard]] std::vector<SoupTriangle> unpackPage(const ooc::PageMesh& mesh);
 
 }  // namespace pagoda::hlod

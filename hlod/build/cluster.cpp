@@ -81,13 +81,14 @@ public:
     [[nodiscard]] size_t triangleCount() const {
         return shown_.size() + kRodTriangles * rods_.size();
     }
-    [[nodiscard]] std::vector<SoupTriangle> triangles(int extentBits) const;
+    [[nodiscard]] std::vector<SoupTriangle> triangles(int extentBits, Outline outline) const;
 
 private:
     using Corners = std::array<uint32_t, 3>;  // clusters of a triangle's corners
 
     [[nodiscard]] std::vector<Cluster> sums() const;
-    [[nodiscard]] std::vector<Vec3d> representatives(const std::vector<Cluster>& clusters) const;
+    [[nodiscard]] std::vector<Vec3d> representatives(const std::vector<Cluster>& clusters,
+                                                     Outline outline) const;
     void unshrink(std::vector<Vec3d>& points) const;
     void addRod(const Rod& rod, const std::vector<Vec3d>& points,
                 const std::vector<uint32_t>& colours, double last,
@@ -173,7 +174,8 @@ std::vector<Cluster> Clustering::sums() const {
 
 // Minimises the planes' quadric with a weak pull to the mean (flat and straight spots have no
 // unique minimum), kept inside the cell.
-std::vector<Vec3d> Clustering::representatives(const std::vector<Cluster>& clusters) const {
+std::vector<Vec3d> Clustering::representatives(const std::vector<Cluster>& clusters,
+                                               Outline outline) const {
     const double half = 0.5 * static_cast<double>(cellSteps_);
     std::vector<Vec3d> points(clusters.size());
     for (size_t i = 0; i < clusters.size(); ++i) {
@@ -190,7 +192,7 @@ std::vector<Vec3d> Clustering::representatives(const std::vector<Cluster>& clust
             (Vec3d(clusters_.keys()[i].cell) + 0.5) * static_cast<double>(cellSteps_);
         points[i] = centre + glm::clamp(best, Vec3d(-half), Vec3d(half));
     }
-    unshrink(points);
+    if (outline == Outline::Unshrunk) unshrink(points);
     return points;
 }
 
@@ -261,9 +263,9 @@ void Clustering::addRod(const Rod& rod, const std::vector<Vec3d>& points,
     }
 }
 
-std::vector<SoupTriangle> Clustering::triangles(int extentBits) const {
+std::vector<SoupTriangle> Clustering::triangles(int extentBits, Outline outline) const {
     const std::vector<Cluster> clusters = sums();
-    const std::vector<Vec3d> points = representatives(clusters);
+    const std::vector<Vec3d> points = representatives(clusters, outline);
     std::vector<uint32_t> colours(clusters.size());
     std::transform(clusters.begin(), clusters.end(), colours.begin(), meanColour);
     const double last = std::ldexp(1.0, extentBits);
@@ -286,7 +288,8 @@ std::vector<SoupTriangle> Clustering::triangles(int extentBits) const {
 }  // namespace
 
 std::vector<SoupTriangle> clusterToBudget(std::span<const SoupTriangle> triangles, uint32_t budget,
-                                          int extentBits, const std::vector<bool>& isTranslucent) {
+                                          int extentBits, const std::vector<bool>& isTranslucent,
+                                          Outline outline) {
     Vec3i min(INT32_MAX), max(INT32_MIN);
     for (const SoupTriangle& triangle : triangles) {
         for (const Vec3i& corner : triangle.corners) {
@@ -294,17 +297,22 @@ std::vector<SoupTriangle> clusterToBudget(std::span<const SoupTriangle> triangle
             max = glm::max(max, corner);
         }
     }
-    // Counts fall nearly monotonically with the cell size, about as its square: bisect in the
-    // logarithm.
+    // A surface's count falls about as the square of the cell size: aim by that, inside a bracket.
+    // It ends when at least 96% of the budget are used, or the bracket is as narrow.
     const Vec3i size = max - min;
     int32_t tooFine = 1, fits = std::max({size.x, size.y, size.z, 2});
+    double aim = fits / std::sqrt(static_cast<double>(budget));
     while (fits - tooFine > std::max(1, fits / 50)) {
-        const double middle = std::sqrt(static_cast<double>(tooFine) * static_cast<double>(fits));
-        const int32_t cell = std::clamp(static_cast<int32_t>(middle), tooFine + 1, fits - 1);
-        (Clustering(triangles, cell, isTranslucent).triangleCount() <= budget ? fits : tooFine) =
-            cell;
+        const int32_t cell = std::clamp(static_cast<int32_t>(aim), tooFine + 1, fits - 1);
+        const auto count =
+            static_cast<double>(Clustering(triangles, cell, isTranslucent).triangleCount());
+        (count <= budget ? fits : tooFine) = cell;
+        if (count <= budget && count >= 0.96 * budget) break;
+        aim = cell * std::sqrt((count + 1) / (0.98 * budget));
+        // Where the guess keeps missing, halve the bracket instead.
+        if (aim <= tooFine || aim >= fits) aim = std::sqrt(static_cast<double>(tooFine) * fits);
     }
-    return Clustering(triangles, fits, isTranslucent).triangles(extentBits);
+    return Clustering(triangles, fits, isTranslucent).triangles(extentBits, outline);
 }
 
 }  // namespace pagoda::hlod

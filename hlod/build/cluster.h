@@ -12,11 +12,17 @@
 
 namespace pagoda::hlod {
 
+// Representatives lie inside what they stand for, so outlines shrink by a part of a cell. Unshrunk
+// pushes rims, edges and corners out again: for meshes that are drawn, not for those that are
+// clustered again.
+enum class Outline { AsClustered, Unshrunk };
+
 // At most `budget` triangles of the finest uniform grid that keeps to it (within 2% of the cell
 // size). Opaque and translucent surfaces never share a cell. Empty when nothing spans three cells
 // at such a size.
 [[nodiscard]] std::vector<SoupTriangle> clusterToBudget(std::span<const SoupTriangle> triangles,
                                                         uint32_t budget, int extentBits,
-                                                        const std::vector<bool>& isTranslucent);
+                                                        const std::vector<bool>& isTranslucent,
+                                                        Outline outline);
 
 }  // namespace pagoda::hlod

@@ -14,6 +14,9 @@ namespace {
 // then below a cell of the parent's grid.
 constexpr uint32_t kProxyFactor = 4;
 
+// Deeper cells are cut open on all sides: little of them is hidden, and there are many.
+constexpr int kVisibilityDepth = 4;
+
 // Pixels along the mesh for the visibility count: triangles should not fall between them, cost
 // grows with the square.
 int visibilityResolution(size_t triangleCount) {
@@ -57,15 +60,20 @@ SimplifyResult clusterVisible(const SimplifyRequest& request) {
     const std::span<const SoupTriangle> source =
         request.finer.empty() ? request.triangles : request.finer;
     const uint32_t proxyBudget = request.budgetTriangles * kProxyFactor;
+    const bool isCoarse = request.cell.extentBits - request.cell.bits <= kVisibilityDepth;
+    const auto cluster = [&](std::span<const SoupTriangle> triangles, uint32_t budget,
+                             Outline outline) {
+        return clusterToBudget(triangles, budget, request.cell.extentBits, *request.isTranslucent,
+                               outline);
+    };
     SimplifyResult result;
     result.isSloppy = true;
-    result.proxy = visibleOf(source);
-    if (result.proxy.size() > proxyBudget) {
-        result.proxy = clusterToBudget(result.proxy, proxyBudget, request.cell.extentBits,
-                                       *request.isTranslucent);
+    result.proxy =
+        isCoarse ? visibleOf(source) : std::vector<SoupTriangle>(source.begin(), source.end());
+    if (isCoarse && result.proxy.size() > proxyBudget) {
+        result.proxy = cluster(result.proxy, proxyBudget, Outline::AsClustered);
     }
-    result.triangles = clusterToBudget(result.proxy, request.budgetTriangles,
-                                       request.cell.extentBits, *request.isTranslucent);
+    result.triangles = cluster(result.proxy, request.budgetTriangles, Outline::Unshrunk);
     // Nothing spans three cells at any size that keeps the budget: the largest stand in.
     if (result.triangles.empty()) result.triangles = largest(source, request.budgetTriangles);
     if (result.proxy.empty()) result.proxy = result.triangles;

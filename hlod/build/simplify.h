@@ -39,7 +39,8 @@ struct SimplifyResult {
 // place that suits the triangle best. Every triangle keeps one object and one material.
 [[nodiscard]] SimplifyResult collapseEdges(const SimplifyRequest& request);
 
-// For nodes whose parts cannot merge: clusterToBudget() of what is visible from outside the node.
+// For nodes whose parts cannot merge: clusterToBudget(); in the coarse cells only of what is
+// visible from outside.
 [[nodiscard]] SimplifyResult clusterVisible(const SimplifyRequest& request);
 
 // Greatest sampled distance between two sets of triangles, both ways, in lattice steps.

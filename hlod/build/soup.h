@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <numbers>
 #include <vector>
 
 namespace pagoda::hlod {
@@ -50,6 +51,10 @@ struct SoupLayout {
     }
 };
 static_assert(offsetof(SoupTriangle, colours) == 44);
+
+// A leaf's error in lattice steps: the snap moved each point by at most half a lattice diagonal,
+// sqrt(3) / 2.
+inline constexpr double kSnapErrorSteps = std::numbers::sqrt3 / 2;
 
 // Three times the centroid, exactly.
 [[nodiscard]] inline glm::i64vec3 tripleCentroid(const std::array<Vec3i, 3>& corners) {

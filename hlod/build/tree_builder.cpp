@@ -13,10 +13,9 @@ namespace {
 // four children a node, so nodes stay equally full.
 constexpr uint32_t kReduction = 4;
 
-// A leaf's error: the snap moved each point by at most half a lattice diagonal.
-double snapErrorSteps() {
-    return std::sqrt(3.0) / 2;
-}
+// Only the coarsest cells cluster from proxies: there are few of them, and they are seen as a
+// whole.
+constexpr int kProxyDepth = 4;
 
 // Interleaved bits of a lattice point, for sorting what a cell cannot tell apart.
 uint64_t mortonKey(const Vec3i& point) {
@@ -47,37 +46,8 @@ std::vector<SoupTriangle> TreeBuilder::unpack(std::span<const std::byte> soup) c
     return triangles;
 }
 
-std::vector<SoupTriangle> TreeBuilder::unpack(const ooc::PageMesh& mesh) const {
-    std::vector<SoupTriangle> triangles(mesh.triangleCount());
-    size_t run = 0;
-    uint32_t left = mesh.runs.empty() ? 0 : mesh.runs[0].triangleCount;
-    for (size_t i = 0; i < triangles.size(); ++i) {
-        while (left == 0) left = mesh.runs[++run].triangleCount;
-        --left;
-        triangles[i].object = mesh.runs[run].object;
-        triangles[i].material = mesh.runs[run].material;
-        for (size_t corner = 0; corner < 3; ++corner) {
-            const uint32_t vertex = mesh.indices[3 * i + corner];
-            triangles[i].corners[corner] = mesh.positions[vertex];
-            triangles[i].colours[corner] =
-                mesh.colours.empty() ? mesh.constantColour : mesh.colours[vertex];
-            if (!mesh.normals.empty()) triangles[i].normals[corner] = mesh.normals[vertex];
-        }
-    }
-    return triangles;
-}
-
 CellFrame TreeBuilder::frameOf(ooc::NodeId cell) const {
-    CellFrame frame{.origin = Vec3i(0),
-                    .bits = settings_.lattice.extentBits - cell.depth(),
-                    .extentBits = settings_.lattice.extentBits};
-    for (int level = 0; level < cell.depth(); ++level) {
-        const auto octant = static_cast<uint32_t>(cell.path() >> (3 * level)) & 7u;
-        for (int axis = 0; axis < 3; ++axis) {
-            if (octant & (1u << axis)) frame.origin[axis] += 1 << (frame.bits + level);
-        }
-    }
-    return frame;
+    return cellFrame(cell, settings_.lattice.extentBits);
 }
 
 TreeBuilder::Subtree TreeBuilder::buildLeaf(ooc::NodeId id, std::span<const SoupTriangle> all,
@@ -86,7 +56,7 @@ TreeBuilder::Subtree TreeBuilder::buildLeaf(ooc::NodeId id, std::span<const Soup
     leaf.triangles.reserve(numbers.size());
     for (const uint32_t number : numbers) leaf.triangles.push_back(all[number]);
     leaf.record.id = id;
-    leaf.record.errorModelUnits = roundedUp(snapErrorSteps() * settings_.lattice.step());
+    leaf.record.errorModelUnits = roundedUp(kSnapErrorSteps * settings_.lattice.step());
     leaf.record.subtreeTriangles = numbers.size();
     leaf.record = store_.add(
         leaf.record, assemblePage(leaf.triangles, frameOf(id.cell()), settings_.isTranslucent));
@@ -153,7 +123,8 @@ TreeBuilder::Subtree TreeBuilder::buildInner(ooc::NodeId cell, std::vector<Subtr
     Subtree node;
     node.record.id = cell;
     std::vector<SoupTriangle> merged, finer;
-    const bool anyProxy = std::any_of(children.begin(), children.end(),
+    const bool anyProxy = cell.depth() <= kProxyDepth &&
+                          std::any_of(children.begin(), children.end(),
                                       [](const Subtree& child) { return !child.proxy.empty(); });
     double childError = 0;
     uint32_t extraLeaves = 0, mask = 0;
@@ -219,7 +190,7 @@ void TreeBuilder::buildTopNode(ooc::NodeId cell) {
         if (!store_.contains(id)) return;
         const ooc::NodeRecord record = store_.find(id);
         children.push_back({.record = record,
-                            .triangles = unpack(store_.readMesh(record)),
+                            .triangles = unpackPage(store_.readMesh(record)),
                             .proxy = store_.readProxy(id)});
     };
     for (uint32_t octant = 0; octant < 8; ++octant) take(cell.child(octant));

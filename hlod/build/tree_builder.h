@@ -47,7 +47,6 @@ private:
     using Numbers = std::vector<uint32_t>;
 
     [[nodiscard]] std::vector<SoupTriangle> unpack(std::span<const std::byte> soup) const;
-    [[nodiscard]] std::vector<SoupTriangle> unpack(const ooc::PageMesh& mesh) const;
     [[nodiscard]] CellFrame frameOf(ooc::NodeId cell) const;
     Subtree buildCell(ooc::NodeId cell, std::span<const SoupTriangle> all, Numbers numbers);
     Subtree buildLeaf(ooc::NodeId id, std::span<const SoupTriangle> all, const Numbers& numbers);
