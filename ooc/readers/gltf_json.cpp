@@ -345,6 +345,18 @@ std::string Checker::run() {
     return out_.dump();
 }
 
+// A number beyond the range of a double: the library quotes it, but does not say where it is.
+[[noreturn]] void failNumber(const SourceFile& source, std::string_view text,
+                             std::string_view said) {
+    const size_t end = said.rfind('\''), begin = end == 0 ? end : said.rfind('\'', end - 1);
+    if (begin == std::string_view::npos || end == begin) {
+        source.fail("JSON", std::string(said), kValidate);
+    }
+    const std::string_view number = said.substr(begin + 1, end - begin - 1);
+    source.fail("byte " + std::to_string(text.find(number) + 1) + " of the JSON",
+                std::string(number) + " is beyond the range of a double", kValidate);
+}
+
 }  // namespace
 
 std::string checkJson(const SourceFile& source, std::string_view text, Extras& extras) {
@@ -353,8 +365,8 @@ std::string checkJson(const SourceFile& source, std::string_view text, Extras& e
         return Checker(source, root, extras).run();
     } catch (const Json::parse_error& failure) {
         source.fail("byte " + std::to_string(failure.byte) + " of the JSON", "not JSON", kValidate);
-    } catch (const Json::exception& failure) {  // numbers beyond the range of a double
-        source.fail("JSON", failure.what(), kValidate);
+    } catch (const Json::out_of_range& failure) {
+        failNumber(source, text, failure.what());
     }
 }
 

@@ -99,13 +99,16 @@ void Reading::run() {
         if (mesh >= 0) draws.emplace_back(mesh, static_cast<uint32_t>(i));
     }
     std::ranges::sort(draws);
+    size_t hiddenMeshes = document_.model.meshes.size();
     std::vector<uint32_t> nodes;
     for (size_t i = 0; i < draws.size(); ++i) {
         nodes.push_back(draws[i].second);
         if (i + 1 < draws.size() && draws[i + 1].first == draws[i].first) continue;
         drawMesh(draws[i].first, nodes);
+        --hiddenMeshes;
         nodes.clear();
     }
+    if (hiddenMeshes > 0) ignore("mesh that the scene does not show", hiddenMeshes);
     source_.checkUnchanged();
     for (const auto& [what, count] : ignored_) sink_.ignored(what, count);
     sink_.advance(source_.sizeBytes() - bytesDone_);

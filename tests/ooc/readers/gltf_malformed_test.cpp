@@ -219,6 +219,29 @@ TEST(GltfMalformed, DeepNestingCostsNoStack) {
     EXPECT_EQ(readAll(folder.write("deep.gltf", text)).triangles.size(), 1u);
 }
 
+TEST(GltfMalformed, ANumberBeyondTheRangeOfADoubleIsNamedWithItsPlace) {
+    TempFolder folder;
+    GltfBuilder file;
+    file.setTriangle();
+    std::string text = file.text();
+    text.insert(1, "\"extras\":-1e309,");
+    const Error error = refusal(folder.write("number.gltf", text));
+    EXPECT_EQ(error.place(), "byte 11 of the JSON");
+    EXPECT_EQ(error.problem(), "-1e309 is beyond the range of a double");
+}
+
+TEST(GltfMalformed, MeshesThatTheSceneDoesNotShowAreCounted) {
+    TempFolder folder;
+    GltfBuilder file;
+    file.setTriangle();
+    file.root["meshes"].push_back(file.root["meshes"][0]);
+    file.root["nodes"].push_back({{"mesh", 0}});  // drawn twice, counted once
+    file.root["scenes"][0]["nodes"].push_back(1);
+    const CollectingSink sink = readAll(file.write(folder));
+    EXPECT_EQ(sink.triangles.size(), 2u);
+    EXPECT_EQ(sink.ignoredThings.at("mesh that the scene does not show"), 1u);
+}
+
 TEST(GltfMalformed, AMissingOrBrokenTextureCostsTheTextureOnly) {
     TempFolder folder;
     // A PNG header of 30000 x 30000 pixels, a file that is not there, and no picture at all.
