@@ -16,8 +16,8 @@ namespace {
 
 constexpr size_t kBatchFamilies = 128;  // looked at together: bounds memory, hides stragglers
 
-// The same samples and sums give the same bits but where a codec turned a triangle's corners, which
-// changes float rounding within sampledDistance().
+// sampledDistance() takes the same samples whatever the order; but its tree of boxes is another,
+// and of two faces that meet where a sample is nearest, the other may be asked: float rounding.
 constexpr double kTolerance = 1e-6;
 
 struct Family {

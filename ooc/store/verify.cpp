@@ -18,16 +18,6 @@ namespace {
 constexpr size_t kBatchPages = 1024;  // looked at together: bounds memory, hides stragglers
 constexpr size_t kPagesPerTask = 8;
 
-std::string nodeName(NodeId id) {
-    std::string name = "node /";
-    for (int level = id.depth(); level-- > 0;) {
-        name += std::to_string((id.path() >> (3 * level)) & 7u);
-        if (level > 0) name += '/';
-    }
-    if (id.slot() != 0) name += " extra " + std::to_string(id.slot());
-    return name;
-}
-
 std::string versus(uint64_t announced, uint64_t found) {
     return std::to_string(announced) + " announced, " + std::to_string(found) + " found";
 }
@@ -255,6 +245,16 @@ private:
 };
 
 }  // namespace
+
+std::string nodeName(NodeId id) {
+    std::string name = "node /";
+    for (int level = id.depth(); level-- > 0;) {
+        name += std::to_string((id.path() >> (3 * level)) & 7u);
+        if (level > 0) name += '/';
+    }
+    if (id.slot() != 0) name += " extra " + std::to_string(id.slot());
+    return name;
+}
 
 void VerifyReport::add(std::string place, std::string what) {
     ++faultCount;

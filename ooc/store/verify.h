@@ -6,6 +6,7 @@
 #pragma once
 
 #include "ooc/base/progress.h"
+#include "ooc/node_id.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +15,9 @@
 #include <vector>
 
 namespace pagoda::ooc {
+
+// As faults name it: the octants from the root down, "node /0/5", "node /0/5 extra 2".
+[[nodiscard]] std::string nodeName(NodeId id);
 
 struct VerifyFault {
     std::string place;  // "index block 3", "node /0/5 (page at byte 1234)"
