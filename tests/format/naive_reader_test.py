@@ -186,7 +186,7 @@ class WhatPagodaBuilds(Truth):
                 self.assert_holds(database, model)
 
     def test_objects_materials_glass_and_normals_survive(self):
-        path = generate("interior", "hall.obj", 30000)
+        path = generate("interior", "hall.obj", 36000)
         model = naive_inputs.read_obj(path)
         self.assertTrue(any(triangle.normals for triangle in model.triangles))
         self.assertTrue(any(material[3] < 255 for material in model.materials.values()))
