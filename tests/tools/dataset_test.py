@@ -12,6 +12,7 @@ import os
 import sys
 from pathlib import Path
 
+sys.dont_write_bytecode = True  # no files in the source tree
 sys.path.insert(0, str(Path(__file__).parent))
 import program
 
@@ -77,7 +78,8 @@ def check(pagoda, data, name, counts):
 def main():
     pagoda, data = program.Program(sys.argv[1]), Path(sys.argv[2])
     models = {name: counts for name, counts in program.counted_models(data).items()
-              if not name.startswith("malformed/") and all(part in name for part in sys.argv[3:])}
+              if not name.startswith("malformed/")
+              and (not sys.argv[3:] or any(part in name for part in sys.argv[3:]))}
     for name in COUNTED_OTHERWISE.keys() & models.keys():
         if models[name]["tris"] == COUNTED_OTHERWISE[name][0]:
             print(f"{name}: stats.json agrees now; take the exception away")
@@ -96,7 +98,7 @@ def main():
     empty = sum(1 for name in models if expected(name, models[name]) == 0 or name in WITHOUT_AREA)
     print(f"{len(models) - empty} models built and verified, {empty} refused for having no surface, "
           f"{problems} of them not as they should")
-    return 1 if problems else 0
+    return 1 if problems or not models else 0
 
 
 if __name__ == "__main__":

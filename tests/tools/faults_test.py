@@ -18,6 +18,7 @@ import time
 import unittest
 from pathlib import Path
 
+sys.dont_write_bytecode = True  # no files in the source tree
 sys.path.insert(0, str(Path(__file__).parent))
 import program
 

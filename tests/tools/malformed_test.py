@@ -15,6 +15,7 @@ import re
 import sys
 from pathlib import Path
 
+sys.dont_write_bytecode = True  # no files in the source tree
 sys.path.insert(0, str(Path(__file__).parent))
 import program
 
