@@ -12,7 +12,7 @@ namespace {
 
 // A proxy may be this many times finer than a node: cracks and colours of clustered children are
 // then below a cell of the parent's grid.
-constexpr uint32_t kProxyFactor = 4;
+constexpr uint32_t kProxyFactor = 8;
 
 // Deeper cells are cut open on all sides: little of them is hidden, and there are many.
 constexpr int kVisibilityDepth = 4;
