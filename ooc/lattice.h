@@ -15,7 +15,7 @@ namespace pagoda::ooc {
 inline constexpr int kMaxExtentBits = 30;
 
 struct Lattice {
-    Vec3d origin{0.0};   // model units of lattice point (0,0,0)
+    Vec3d origin{0.0};     // model units of lattice point (0,0,0)
     int stepExponent = 0;  // step = 2^stepExponent model units
     int extentBits = 0;    // the root cell is [0, 2^extentBits)^3; 1..kMaxExtentBits
 

@@ -21,6 +21,7 @@ Error::Error(std::string path, std::string place, std::string what, std::string 
       path_(std::move(path)),
       place_(std::move(place)),
       problem_(std::move(what)),
-      remedy_(std::move(remedy)) {}
+      remedy_(std::move(remedy)) {
+}
 
 }  // namespace pagoda

@@ -43,8 +43,8 @@ public:
     // Reserves disk for the range, so that a full disk is said now and not in mid-write.
     void reserve(uint64_t sizeBytes);
     void truncate(uint64_t sizeBytes);
-    // Gives the range's disk space back; it reads as zeros then. Without effect where the file system
-    // cannot.
+    // Gives the range's disk space back; it reads as zeros then. Without effect where the file
+    // system cannot.
     void discard(uint64_t offset, uint64_t sizeBytes) noexcept;
     void sync();
     void close();
@@ -88,6 +88,5 @@ private:
     uint64_t written_ = 0;
     std::span<const std::byte> mapped_;
 };
-
 
 }  // namespace pagoda

@@ -1,5 +1,6 @@
 // thread_pool.h: a fixed number of workers and one queue. Tasks may add tasks. What a task throws
-// is kept (the first one) and thrown again by wait() on the waiting thread; later tasks are dropped.
+// is kept (the first one) and thrown again by wait() on the waiting thread; later tasks are
+// dropped.
 #pragma once
 
 #include <condition_variable>

@@ -86,8 +86,8 @@ enum class UpAxis : uint8_t { Unknown, Y, Z };
 
 struct ReaderOptions {
     std::filesystem::path scratchFolder = std::filesystem::temp_directory_path();
-    uint64_t memoryBytes = uint64_t{2} << 30;       // whole-file formats refuse beyond this
-    uint64_t maxTriangles = uint64_t{1} << 33;      // after expansion of instances
+    uint64_t memoryBytes = uint64_t{2} << 30;   // whole-file formats refuse beyond this
+    uint64_t maxTriangles = uint64_t{1} << 33;  // after expansion of instances
 };
 
 class Reader {
@@ -105,7 +105,7 @@ public:
 
 // One row a format: how it is known and who reads it.
 struct ReaderFormat {
-    std::string_view name;                    // "PLY"
+    std::string_view name;                     // "PLY"
     std::vector<std::string_view> extensions;  // lower case with dot
     std::unique_ptr<Reader> (*open)(const std::filesystem::path&, const ReaderOptions&);
 };

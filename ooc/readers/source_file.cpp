@@ -12,7 +12,8 @@ namespace pagoda::ooc {
 SourceFile::SourceFile(const std::filesystem::path& path)
     : original_(File::openForReading(path)),
       sizeBytes_(original_.sizeBytes()),
-      changeStamp_(original_.changeStamp()) {}
+      changeStamp_(original_.changeStamp()) {
+}
 
 SourceFile SourceFile::openText(const std::filesystem::path& path,
                                 const std::filesystem::path& scratchFolder) {

@@ -1,6 +1,6 @@
 // database_walk.inl: walkIndex() and forEachNode() of database.h.
-// A child's id must be the one its place implies. So every node is reached once at most and the walk
-// ends and goes no deeper than ids do, whatever a hostile file refers to.
+// A child's id must be the one its place implies. So every node is reached once at most and the
+// walk ends and goes no deeper than ids do, whatever a hostile file refers to.
 #pragma once
 
 #include <algorithm>

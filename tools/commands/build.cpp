@@ -2,8 +2,8 @@
 #include "ooc/base/error.h"
 #include "tools/session.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include <fstream>
 #include <iostream>
@@ -42,15 +42,17 @@ hlod::BuildOptions toOptions(const Arguments& arguments) {
     options.codec = *ooc::codecByName(arguments.codec);
     options.nodeTriangles = arguments.nodeTriangles;
     options.maxTriangles = arguments.maxTriangles;
-    if (!arguments.up.empty()) options.upAxis = arguments.up == "y" ? ooc::UpAxis::Y : ooc::UpAxis::Z;
+    if (!arguments.up.empty())
+        options.upAxis = arguments.up == "y" ? ooc::UpAxis::Y : ooc::UpAxis::Z;
     return options;
 }
 
 void printSummary(const hlod::BuildReport& report, const std::string& target) {
-    std::cout << fmt::format("{}: {} triangles in {} nodes, {} levels, {} ({:.2f} bytes a triangle)\n", target,
-                             formatCount(report.triangles), formatCount(report.nodes), report.levels.size(),
-                             formatBytes(report.fileBytes),
-                             static_cast<double>(report.fileBytes) / static_cast<double>(report.triangles));
+    std::cout << fmt::format(
+        "{}: {} triangles in {} nodes, {} levels, {} ({:.2f} bytes a triangle)\n", target,
+        formatCount(report.triangles), formatCount(report.nodes), report.levels.size(),
+        formatBytes(report.fileBytes),
+        static_cast<double>(report.fileBytes) / static_cast<double>(report.triangles));
     for (const auto& [reason, count] : report.dropped) {
         std::cout << fmt::format("dropped: {} ({})\n", formatCount(count), reason);
     }
@@ -66,7 +68,8 @@ void printSummary(const hlod::BuildReport& report, const std::string& target) {
 void writeReport(const hlod::BuildReport& report, const std::string& path) {
     std::ofstream out(path, std::ios::trunc);
     out << hlod::toJson(report) << '\n';
-    if (!out.flush()) throw Error(path, "", "cannot write the report", "check the path and the disk");
+    if (!out.flush())
+        throw Error(path, "", "cannot write the report", "check the path and the disk");
 }
 
 }  // namespace
@@ -76,27 +79,41 @@ void addBuildCommand(CLI::App& app, Session& session) {
     CLI::App* command = app.add_subcommand("build", "Make a database from mesh files");
     command->footer(kExamples);
     command->add_option("inputs", arguments->inputs, "Files, folders or globs")->required();
-    command->add_option("-o,--output", arguments->target, "The database to make (NAME.pagoda)")->required();
+    command->add_option("-o,--output", arguments->target, "The database to make (NAME.pagoda)")
+        ->required();
     command->add_flag("--force", arguments->force, "Replace an existing target");
-    command->add_option("--memory", arguments->memory, "Private memory to stay within (256MiB or more)")
+    command
+        ->add_option("--memory", arguments->memory,
+                     "Private memory to stay within (256MiB or more)")
         ->capture_default_str();
-    command->add_option("--threads", arguments->threads, "Workers (0: one a core)")->capture_default_str();
-    command->add_option("--scratch", arguments->scratch, "Folder for temporary files (default: the target's)");
+    command->add_option("--threads", arguments->threads, "Workers (0: one a core)")
+        ->capture_default_str();
+    command->add_option("--scratch", arguments->scratch,
+                        "Folder for temporary files (default: the target's)");
     command->add_option("--precision", arguments->precision,
-                        "Lattice step in model units, rounded down to a power of two (default: from extent and detail)");
+                        "Lattice step in model units, rounded down to a power of two (default: "
+                        "from extent and detail)");
     command->add_option("--codec", arguments->codec, "How pages are packed")
         ->check(CLI::IsMember({"meshopt", "draco", "raw"}))
         ->capture_default_str();
-    command->add_option("--node-triangles", arguments->nodeTriangles, "The most triangles a node holds")
+    command
+        ->add_option("--node-triangles", arguments->nodeTriangles,
+                     "The most triangles a node holds")
         ->check(CLI::Range(64u, 21845u))
         ->capture_default_str();
-    command->add_option("--max-triangles", arguments->maxTriangles, "Refuse inputs that expand beyond this")
+    command
+        ->add_option("--max-triangles", arguments->maxTriangles,
+                     "Refuse inputs that expand beyond this")
         ->capture_default_str();
-    command->add_option("--up", arguments->up, "Up axis of the database (default: the first input's, else z)")
+    command
+        ->add_option("--up", arguments->up,
+                     "Up axis of the database (default: the first input's, else z)")
         ->check(CLI::IsMember({"y", "z"}));
-    command->add_option("--report", arguments->report, "Write stage times, bytes, peaks and counts as JSON");
+    command->add_option("--report", arguments->report,
+                        "Write stage times, bytes, peaks and counts as JSON");
     command->callback([arguments, &session] {
-        const hlod::BuildReport report = hlod::buildDatabase(toOptions(*arguments), *session.progress);
+        const hlod::BuildReport report =
+            hlod::buildDatabase(toOptions(*arguments), *session.progress);
         printSummary(report, arguments->target);
         if (!arguments->report.empty()) writeReport(report, arguments->report);
     });
