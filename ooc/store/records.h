@@ -21,7 +21,7 @@ enum NodeFlags : uint16_t {
     kNodeHasTranslucent = 4,
     kNodeHasZippers = 8,
     kNodeSloppy = 16,  // parts could not merge: clustered, not closed against its neighbours
-    kNodeStuck = 32,  // more triangles than aimed at: locked borders left too little to simplify
+    kNodeStuck = 32,   // more triangles than aimed at: locked borders left too little to simplify
 };
 
 // One node, as index blocks hold it. A node's children stand side by side in one block.
