@@ -5,7 +5,7 @@ add_library(pagoda_options INTERFACE)
 target_compile_features(pagoda_options INTERFACE cxx_std_20)
 target_compile_options(pagoda_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
-  # Bits must agree between compilers and dispatched paths (DESIGN.md section 4): no fused multiply-add.
+  # Bits must agree between compilers and dispatched paths: no fused multiply-add.
   -ffp-contract=off
   # Asserts name files from the repository's root, not the folder this was built in.
   -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=

@@ -1,7 +1,7 @@
 // lattice.h: the one integer grid on which all geometry of a database lies.
 // Positions are integers from here on: equal positions are equal integers, and float never decides
 // topology. The step is a power of two and the origin a multiple of it, so that
-// origin + point * step is exact in double. DESIGN.md section 4, step 2, and section 11.
+// origin + point * step is exact in double. docs/build.md, step 2.
 #pragma once
 
 #include "ooc/base/box.h"

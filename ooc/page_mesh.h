@@ -29,7 +29,7 @@ struct MeshRun {
 
 // Parts a page's triangles are sorted by: the 8 octants of the node's cell, opaque ones first, then
 // the 8 octants' translucent ones; partStart[p] is the first triangle of part p, partStart[16]
-// their number. Any part may be drawn alone (DESIGN.md section 6, step 3).
+// their number. Any part may be drawn alone.
 inline constexpr int kPageParts = 16;
 
 struct PageMesh {
@@ -51,7 +51,7 @@ struct PageMesh {
     [[nodiscard]] bool operator==(const PageMesh&) const = default;
 };
 
-// Triangles joining two nodes of which exactly one is refined (SEAMS.md). Empty while borders are
+// Triangles joining two nodes of which exactly one is refined. Empty while borders are
 // locked.
 struct Zipper {
     uint64_t neighbour = 0;  // NodeId::value

@@ -1,5 +1,5 @@
 // main.cpp: the program `pagoda`. Each command is a file in commands/; here are what all share: the
-// command line, the exit codes and the one line an error gets. DESIGN.md section 14.
+// command line, the exit codes and the one line an error gets.
 #include "ooc/base/error.h"
 #include "tools/console_progress.h"
 #include "tools/session.h"

@@ -1,5 +1,5 @@
 // lattice_view.h: a view in the lattice's own integers, so that equal lattice points give equal
-// bits on the GPU. DESIGN.md section 11. The camera's lattice cell is the reference. A page's
+// bits on the GPU. The camera's lattice cell is the reference. A page's
 // offset from it is formed here in 64 bits; the shader adds the vertex's integers (exact: point -
 // reference fits 32 bits), converts once to float, subtracts the eye's place relative to the
 // reference and applies one matrix. Nothing in that depends on the page, so two nodes that share a

@@ -25,8 +25,7 @@ struct Wedge {
     }
 };
 
-constexpr unsigned kCacheSize =
-    16;  // FIFO entries: BUILDER.md c), ACMR within 0.5% of the slow one
+constexpr unsigned kCacheSize = 16;  // FIFO entries: ACMR within 0.5% of the slow one
 
 uint32_t partOf(const SoupTriangle& triangle, const CellFrame& cell, bool isTranslucent) {
     const Vec3i point = centroidPoint(triangle.corners, cell.extentBits);

@@ -1,4 +1,4 @@
-// build.h: from mesh files to one database. DESIGN.md section 4; a page on it: docs/build.md.
+// build.h: from mesh files to one database. A page on it: docs/build.md.
 // The result depends on inputs and settings alone: same bytes for any thread count and memory
 // budget.
 #pragma once

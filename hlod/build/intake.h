@@ -1,5 +1,5 @@
 // intake.h: the second reading: snaps every triangle, drops and counts the bad, spills the rest to
-// scratch in input order. DESIGN.md section 4, steps 1 and 2.
+// scratch in input order. docs/build.md, step 3.
 #pragma once
 
 #include "hlod/build/inputs.h"

@@ -1,5 +1,5 @@
 // partition.h: cuts the Morton order of all triangles into pieces that fit in memory, and moves
-// every triangle to its piece in scratch. DESIGN.md section 4, step 3.
+// every triangle to its piece in scratch. docs/build.md, step 4.
 //
 // A piece is the whole subtree of one cell, with at most kPieceTriangles triangles. Cells above
 // pieces are the top: built last, from the pieces' finished roots. A triangle too long for the

@@ -30,8 +30,8 @@ struct SimplifyResult {
     uint64_t bentWedges = 0;  // corners whose stored normal is over 60 degrees off the triangle
 };
 
-// Edge collapse with every border locked, so that nodes stay closed at every cut (SEAMS.md,
-// candidate L); where that leaves more than the budget, clusterVisible().
+// Edge collapse with every border locked, so that nodes stay closed at every cut; where that leaves
+// more than the budget, clusterVisible().
 [[nodiscard]] SimplifyResult simplifyNode(const SimplifyRequest& request);
 
 // meshopt_simplify (0.18) with LockBorder. Edges where objects, materials or colours meet are

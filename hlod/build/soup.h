@@ -79,7 +79,7 @@ inline constexpr double kSnapErrorSteps = std::numbers::sqrt3 / 2;
 }
 
 // The depth of the smallest cells whose children are still large against the triangle: in deeper
-// cells it would be longer than half a child's edge (RUNTIME.md d: k = 0.5), and it stays above as
+// cells it would be longer than half a child's edge and it stays above as
 // an extra leaf. Cells of depth d have edge 2^(extentBits - d); the answer is the least d with edge
 // < 4 * longest.
 [[nodiscard]] inline int homeDepth(const std::array<Vec3i, 3>& corners, int extentBits) {

@@ -1,5 +1,5 @@
 // tree_builder.h: one piece in memory -> its nodes, bottom up; and the cells above pieces.
-// DESIGN.md section 4, steps 4 and 5. Free of shared state but for the NodeStore: pieces may be
+// docs/build.md, steps 5 to 8. Free of shared state but for the NodeStore: pieces may be
 // built on any number of threads, in any order, and give the same nodes.
 #pragma once
 

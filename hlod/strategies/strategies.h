@@ -1,4 +1,4 @@
-// strategies.h: the table of strategies: name, paper, what it is. DESIGN.md section 9.
+// strategies.h: the table of strategies: name, paper, what it is.
 #pragma once
 
 #include "hlod/view/strategy.h"

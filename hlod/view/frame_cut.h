@@ -1,5 +1,5 @@
 // frame_cut.h: the nodes that one frame draws and the nodes it refines.
-// Zipper rule (SEAMS.md): the strip of a pair (A, B) is drawn <=> refined(A) xor refined(B). A leaf
+// Zipper rule: the strip of a pair (A, B) is drawn <=> refined(A) xor refined(B). A leaf
 // that is drawn counts as refined; a node below a drawn one does not. Each strip is stored with
 // both nodes, so drawing it from the refined side, where refined() of the neighbour is false, draws
 // it once. One thread; O(log nodes) a call.

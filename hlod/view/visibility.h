@@ -1,5 +1,5 @@
 // visibility.h: how a strategy asks what is seen. Stated here; implemented by GL queries (viewer/),
-// a software rasteriser (hlod/raster/) and tests. DESIGN.md section 8. A strategy either waits or
+// a software rasteriser (hlod/raster/) and tests. A strategy either waits or
 // treats an unknown answer as visible, never as hidden: pictures stay right at every latency. A box
 // that holds the eye or crosses the near plane is visible, unasked. Render thread only.
 #pragma once

@@ -1,4 +1,4 @@
-// page_codec.h: a node's mesh as bytes and back. DESIGN.md section 5; bytes: ooc/FORMAT.md.
+// page_codec.h: a node's mesh as bytes and back. Bytes: ooc/FORMAT.md.
 // A page is a table of tagged sections. Encoding is deterministic; decoding trusts nothing: sizes
 // are checked before memory is taken and indices before they are used. All functions are free of
 // shared state: call them from any thread.

@@ -1,6 +1,6 @@
 // reader.h: a file of triangles as a stream of batches.
 // A reader turns one file into objects, materials and triangle batches, in file order. It is the
-// only code that knows the file's format; nothing behind it does. DESIGN.md section 4, step 1.
+// only code that knows the file's format; nothing behind it does. docs/build.md, step 1.
 //
 // Counting: every triangle of the file (polygons as fans of n - 2, strips and fans expanded,
 // instances multiplied) is either in a batch or in one dropped() call, so that

@@ -1,7 +1,7 @@
 // database.h: reads a database. Opening costs the header, the block directories, materials and
 // metadata: it does not grow with what is never looked at. Nothing read is trusted.
 // Const calls may come from any thread at once. Faults of single pages and blocks are values, so
-// that a flipped bit costs that page alone (DESIGN.md section 13); open() throws Error for the
+// that a flipped bit costs that page alone; open() throws Error for the
 // rest.
 #pragma once
 

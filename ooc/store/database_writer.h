@@ -1,7 +1,7 @@
 // database_writer.h: writes one database beside its target and publishes it whole.
 // Order of calls: addPage() for every node in file order, then publish() once. Until publish()
 // ends, nothing exists under the target's name; a writer destroyed before that leaves nothing
-// behind. One thread. DESIGN.md section 4, step 6.
+// behind. One thread. docs/build.md, step 10.
 #pragma once
 
 #include "ooc/base/file.h"

@@ -1,5 +1,5 @@
 // records.h: what the store keeps of nodes, objects and materials, as plain structs.
-// Bytes on disk: ooc/FORMAT.md. DESIGN.md section 5.
+// Bytes on disk: ooc/FORMAT.md.
 #pragma once
 
 #include "ooc/base/box.h"

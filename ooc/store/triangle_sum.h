@@ -1,4 +1,4 @@
-// triangle_sum.h: the fingerprint of one accepted triangle. DESIGN.md section 5: count and sum of
+// triangle_sum.h: the fingerprint of one accepted triangle. Count and sum of
 // all accepted triangles go into the header; verify recomputes both from the leaves' pages, so that
 // none is lost or doubled.
 #pragma once

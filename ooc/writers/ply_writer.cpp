@@ -60,27 +60,27 @@ Vertex load(const std::byte* in, const VertexLayout& layout) {
 
 std::string makeHeader(const VertexLayout& layout, uint64_t vertices, uint64_t faces) {
     const std::string real = layout.hasDoubles ? "double" : "float";
-    std::string text = "ply\nformat binary_little_endian 1.0\ncomment written by Pagoda\n";
-    text += "element vertex " + std::to_string(vertices) + "\n";
-    for (const char* name : {"x", "y", "z"}) text += "property " + real + " " + name + "\n";
+    std::string elements = "element vertex " + std::to_string(vertices) + "\n";
+    for (const char* name : {"x", "y", "z"}) elements += "property " + real + " " + name + "\n";
     if (layout.hasNormals) {
         for (const char* name : {"nx", "ny", "nz"}) {
-            text += std::string("property float ") + name + "\n";
+            elements += std::string("property float ") + name + "\n";
         }
     }
     if (layout.hasColours) {
         for (const char* name : {"red", "green", "blue", "alpha"}) {
-            text += std::string("property uchar ") + name + "\n";
+            elements += std::string("property uchar ") + name + "\n";
         }
     }
-    text += "element face " + std::to_string(faces) + "\n";
-    text += vertices > INT32_MAX ? "property list uchar uint vertex_indices\n"
-                                 : "property list uchar int vertex_indices\n";
-    const std::string end = "end_header\n";
-    const std::string comment = "comment ";
-    text += comment;
-    text.append(kHeaderBytes - text.size() - 1 - end.size(), '.');
-    return text + "\n" + end;
+    elements += "element face " + std::to_string(faces) + "\n";
+    elements += vertices > INT32_MAX ? "property list uchar uint vertex_indices\n"
+                                     : "property list uchar int vertex_indices\n";
+    elements += "end_header\n";
+    // The comment that fills the header stands before the elements: behind the last property
+    // OpenMesh 9.0 takes what follows for the first vertex.
+    std::string text = "ply\nformat binary_little_endian 1.0\ncomment written by Pagoda ";
+    text.append(kHeaderBytes - text.size() - 1 - elements.size(), '.');
+    return text + "\n" + elements;
 }
 
 class PlyWriter final : public MeshWriter {

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fails when an include points upwards (DESIGN.md section 2). Standard library only.
+"""Fails when an include points upwards. Standard library only.
 
     check_includes.py ROOT        checks every source file below ROOT
     check_includes.py --self-test plays wrong and right includes against the rules
@@ -48,7 +48,7 @@ def fault_of(path, quoted, angled):
     """What is wrong with one include in the file `path`, or None."""
     source = folder_of(path)
     if source is None:
-        return "lies in no folder of DESIGN.md section 2"
+        return "lies in no known folder"
     name = quoted or angled
     target = folder_of(name)
     if target is None:

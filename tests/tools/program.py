@@ -49,7 +49,7 @@ class Program:
 
 
 def is_one_error_line(run):
-    """Exit code 1 and what STYLE.md section 8 promises: one line that begins with the program."""
+    """Exit code 1 and what every failure promises: one line that begins with the program."""
     return run.code == 1 and run.err.startswith("pagoda: ") and run.err.count("\n") == 1 \
         and run.err.endswith("\n") and len(run.err) < 1000
 

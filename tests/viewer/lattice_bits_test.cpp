@@ -1,5 +1,5 @@
 // Seams close only if a lattice point that nodes share is drawn at the same bits by each of them:
-// checked by transform feedback over random mixed cuts. DESIGN.md section 11.
+// checked by transform feedback over random mixed cuts.
 #include "tests/viewer/gl_fixture.h"
 #include "tests/viewer/memory_scene.h"
 #include "viewer/frame_target.h"

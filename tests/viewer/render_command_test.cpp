@@ -1,4 +1,4 @@
-// `pagoda render` as a script sees it: files, exit codes, faults. DESIGN.md sections 13 and 14.
+// `pagoda render` as a script sees it: files, exit codes, faults.
 #include "hlod/build/build.h"
 #include "ooc/base/file.h"
 #include "ooc/store/database.h"
