@@ -159,7 +159,7 @@ void buildPieces(TreeBuilder& builder, const Partition& partition, const SoupLay
             std::vector<std::byte> soup(piece.triangleCount * layout.bytes());
             const File& file = partition.files[piece.file];
             file.readAt(piece.firstTriangle * layout.bytes(), soup);
-            const_cast<File&>(file).discard(piece.firstTriangle * layout.bytes(), soup.size());
+            file.discard(piece.firstTriangle * layout.bytes(), soup.size());
             if (piece.isExtra) {
                 builder.buildExtraLeaves(piece.cell, soup);
             } else {

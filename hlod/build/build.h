@@ -52,6 +52,7 @@ struct BuildReport {
     uint64_t bentWedges = 0;  // corners of coarse triangles whose normal is over 60 degrees off
     std::vector<LevelReport> levels;
     std::vector<StageReport> stages;
+    // scratchPeakBytes is an upper bound: it does not take off what was given back in between.
     uint64_t inputBytes = 0, fileBytes = 0, pageBytes = 0, scratchPeakBytes = 0,
              privatePeakBytes = 0;
     double latticeStep = 0;

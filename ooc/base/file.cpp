@@ -165,7 +165,7 @@ void File::truncate(uint64_t sizeBytes) {
     }
 }
 
-void File::discard(uint64_t offset, uint64_t sizeBytes) noexcept {
+void File::discard(uint64_t offset, uint64_t sizeBytes) const noexcept {
     if (sizeBytes == 0) return;
     (void)::fallocate(descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE,
                       static_cast<off_t>(offset), static_cast<off_t>(sizeBytes));

@@ -45,7 +45,7 @@ public:
     void truncate(uint64_t sizeBytes);
     // Gives the range's disk space back; it reads as zeros then. Without effect where the file
     // system cannot.
-    void discard(uint64_t offset, uint64_t sizeBytes) noexcept;
+    void discard(uint64_t offset, uint64_t sizeBytes) const noexcept;
     void sync();
     void close();
     [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
