@@ -154,7 +154,9 @@ protected:
         // places of their common border: four faces on an edge. Closed all the same, and rare: 0 to
         // 8 faces a cut when this was written.
         EXPECT_LE(topology.refused * 250, topology.triangles) << "complex edges or vertices";
-        if (topology.refused == 0) EXPECT_EQ(topology.euler, 0);
+        if (topology.refused == 0) {
+            EXPECT_EQ(topology.euler, 0);
+        }
         std::cout << cut << ": " << topology.triangles << " triangles, " << topology.refused
                   << " at complex edges or vertices\n";
     }
