@@ -10,7 +10,7 @@
 namespace pagoda::hlod {
 namespace {
 
-// Samples a direction. The bound of the builder's own issue replaces sampling; 4096 a node cost
+// Samples a direction: a measurement, not a bound. 4096 a node cost
 // about as much as the simplification itself.
 constexpr size_t kMaxSamples = 4096;
 constexpr size_t kScoutStride = 61;

@@ -207,7 +207,7 @@ void print(const Json& json) {
                                 std::max(number(json["diagonal"]), 1e-300),
                             formatBytes(json["root"]["bytes"].get<uint64_t>())));
     if (json["sloppy_nodes"] != 0) row("clustered", count(json["sloppy_nodes"]) + " nodes");
-    if (json["stuck_nodes"] != 0) row("over budget", count(json["stuck_nodes"]) + " nodes");
+    if (json["stuck_nodes"] != 0) row("above target", count(json["stuck_nodes"]) + " nodes");
     for (const Json& entry : json["left_out"]) {
         row("left out", entry["what"].get<std::string>() + " in " + count(entry["pages"]) +
                             " pages (" + entry["why"].get<std::string>() + ")");
