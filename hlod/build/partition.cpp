@@ -53,7 +53,7 @@ public:
         result_.files.push_back(std::move(intake.spill));
         result_.scratchBytes = intake.accepted * layout_.bytes();
         const Piece whole{.cell = ooc::NodeId::root(), .triangleCount = intake.accepted};
-        refine(whole);
+        if (whole.triangleCount > 0) refine(whole);
         return std::move(result_);
     }
 

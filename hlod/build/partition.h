@@ -1,10 +1,11 @@
 // partition.h: cuts the Morton order of all triangles into pieces that fit in memory, and moves
 // every triangle to its piece in scratch. docs/build.md, step 4.
 //
-// A piece is the whole subtree of one cell, with at most kPieceTriangles triangles. Cells above
-// pieces are the top: built last, from the pieces' finished roots. A triangle too long for the
-// children of a top cell (homeDepth) stays there, in a piece of its own kind. Pieces depend on the
-// input alone, never on the memory budget or the number of threads.
+// A piece is the whole subtree of one cell, with at most `pieceTriangles` triangles unless the cell
+// has the greatest depth. Cells above pieces are the top: built last, from the pieces' finished
+// roots. A triangle too long for the children of a top cell (homeDepth) stays there, in a piece of
+// its own kind and of any size. Pieces, and the order of triangles in them, which is the input's,
+// depend on the input alone, never on the memory budget or the number of threads.
 #pragma once
 
 #include "hlod/build/intake.h"
@@ -29,13 +30,14 @@ struct Piece {
 
 struct Partition {
     std::vector<File> files;
-    std::vector<Piece> pieces;          // Morton order
+    std::vector<Piece> pieces;          // Morton order, extra leaves before children; none empty
     std::vector<ooc::NodeId> topCells;  // parents before children
     int maxDepth = 0;                   // of any cell: min(kMaxDepth, extentBits)
     uint64_t scratchBytes = 0;
 };
 
-// Consumes the spill of `intake`.
+// Consumes the spill of `intake`. `pieceTriangles` (kPieceTriangles, but for tests) counts for no
+// less than `nodeTriangles`. No triangles give no pieces.
 [[nodiscard]] Partition partitionTriangles(Intake& intake, const ooc::Lattice& lattice,
                                            const std::filesystem::path& scratchFolder,
                                            uint64_t pieceTriangles, uint32_t nodeTriangles,
