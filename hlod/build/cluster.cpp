@@ -291,6 +291,7 @@ std::vector<SoupTriangle> Clustering::triangles(int extentBits, Outline outline)
 std::vector<SoupTriangle> clusterToBudget(std::span<const SoupTriangle> triangles, uint32_t budget,
                                           int extentBits, const std::vector<bool>& isTranslucent,
                                           Outline outline) {
+    if (triangles.empty()) return {};
     Vec3i min(INT32_MAX), max(INT32_MIN);
     for (const SoupTriangle& triangle : triangles) {
         for (const Vec3i& corner : triangle.corners) {
@@ -299,10 +300,11 @@ std::vector<SoupTriangle> clusterToBudget(std::span<const SoupTriangle> triangle
         }
     }
     // A surface's count falls about as the square of the cell size: aim by that, inside a bracket.
-    // It ends when at least 96% of the budget are used, or the bracket is as narrow.
+    // It ends when at least 96% of the budget are used, or the bracket is as narrow. The coarsest
+    // grid has all in one cell: one of the mesh's own size may still be cut in eight by its planes.
     const Vec3i size = max - min;
-    int32_t tooFine = 1, fits = std::max({size.x, size.y, size.z, 2});
-    double aim = fits / std::sqrt(static_cast<double>(budget));
+    int32_t tooFine = 1, fits = std::max({max.x, max.y, max.z, 1}) + 1;
+    double aim = std::max({size.x, size.y, size.z, 2}) / std::sqrt(static_cast<double>(budget));
     while (fits - tooFine > std::max(1, fits / 50)) {
         const int32_t cell = std::clamp(static_cast<int32_t>(aim), tooFine + 1, fits - 1);
         const auto count =

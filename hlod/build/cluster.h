@@ -17,9 +17,11 @@ namespace pagoda::hlod {
 // clustered again.
 enum class Outline { AsClustered, Unshrunk };
 
-// At most `budget` triangles of the finest uniform grid that keeps to it (within 2% of the cell
-// size). Opaque and translucent surfaces never share a cell. Empty when nothing spans three cells
-// at such a size.
+// At most `budget` (> 0) triangles of the finest uniform grid that keeps to it: cells of whole
+// steps from 2, their size within 2%, or coarser with 96% of the budget used. Each of its corners
+// lies in its cell (AsClustered) and has the mean colour there, weighted by area. Opaque and
+// translucent surfaces never share a cell. Empty when nothing spans three cells, and no rod two, at
+// such a size.
 [[nodiscard]] std::vector<SoupTriangle> clusterToBudget(std::span<const SoupTriangle> triangles,
                                                         uint32_t budget, int extentBits,
                                                         const std::vector<bool>& isTranslucent,
