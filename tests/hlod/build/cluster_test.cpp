@@ -213,6 +213,15 @@ TEST(Cluster, keepsAnyBudgetAndMakesNoTriangleWithoutArea) {
     }
 }
 
+TEST(Cluster, cellsWhoseMeansLieOnALineGiveNoTriangle) {
+    // Mirrored about y = 10: where 8 and 12 share a cell, it stands for both at 10.
+    Triangles source(2);
+    source[0].corners = {Vec3i(1, 10, 5), Vec3i(31, 12, 5), Vec3i(61, 10, 5)};
+    source[1].corners = {Vec3i(1, 10, 5), Vec3i(31, 8, 5), Vec3i(61, 10, 5)};
+    EXPECT_TRUE(clusterToBudget(source, 1, kExtentBits, kMaterials, Outline::AsClustered).empty());
+    EXPECT_EQ(clusterToBudget(source, 2, kExtentBits, kMaterials, Outline::AsClustered).size(), 2u);
+}
+
 TEST(Cluster, keepsTheBudgetOfAMeshThatStraddlesCellsLargerThanItself) {
     // The grid's planes are multiples of the cell: one may cut what is smaller than a cell.
     const Triangles source = sphere(16, 8, 20, Vec3d(1024, 1024, 1024), 0);
@@ -251,7 +260,8 @@ TEST(Cluster, opaqueAndTranslucentInOnePlaceKeepTheirColours) {
 }
 
 TEST(Cluster, aResultTakesObjectAndMaterialTogetherFromOneTriangle) {
-    const Triangles source = twoSpheres();
+    Triangles source = twoSpheres();
+    for (SoupTriangle& triangle : source) triangle.object *= 5;  // no neighbours by chance
     const Triangles result =
         clusterToBudget(source, 300, kExtentBits, kMaterials, Outline::Unshrunk);
     ASSERT_FALSE(result.empty());
