@@ -33,18 +33,18 @@ public:
         const int bottom = last(std::max({p[0].y, p[1].y, p[2].y}));
         const int left = first(std::min({p[0].x, p[1].x, p[2].x}));
         const int right = last(std::max({p[0].x, p[1].x, p[2].x}));
-        const Vec3f u = p[1] - p[0], v = p[2] - p[0];
-        const float area = u.x * v.y - u.y * v.x;
-        if (top > bottom || left > right || std::abs(area) < 1e-6f) return;
-        const float perArea = 1 / area;
+        if (top > bottom || left > right) return;
+        const std::array<Edge, 3> edges = {Edge(p[1], p[2]), Edge(p[2], p[0]), Edge(p[0], p[1])};
         for (int y = top; y <= bottom; ++y) {
-            const float py = static_cast<float>(y) + 0.5f - p[0].y;
             for (int x = left; x <= right; ++x) {
-                const float px = static_cast<float>(x) + 0.5f - p[0].x;
-                const float w1 = (px * v.y - py * v.x) * perArea,
-                            w2 = (u.x * py - u.y * px) * perArea;
-                if (w1 < 0 || w2 < 0 || w1 + w2 > 1) continue;
-                put(x, y, number, p[0].z + w1 * u.z + w2 * v.z);
+                const Vec3d w(edges[0].side(x + 0.5, y + 0.5), edges[1].side(x + 0.5, y + 0.5),
+                              edges[2].side(x + 0.5, y + 0.5));
+                const bool isInside =
+                    (w.x >= 0 && w.y >= 0 && w.z >= 0) || (w.x <= 0 && w.y <= 0 && w.z <= 0);
+                const double area = w.x + w.y + w.z;
+                if (!isInside || std::abs(area) < 1e-6) continue;  // below: seen edge-on
+                put(x, y, number,
+                    static_cast<float>((w.x * p[0].z + w.y * p[1].z + w.z * p[2].z) / area));
             }
         }
     }
@@ -58,6 +58,25 @@ public:
     }
 
 private:
+    // Twice the area to a point, positive on the left. From the lower end whichever way the edge is
+    // named: triangles that share it round alike, and no pixel falls between them.
+    class Edge {
+    public:
+        Edge(const Vec3f& a, const Vec3f& b)
+            : isTurned_(b.x < a.x || (b.x == a.x && b.y < a.y)),
+              from_(isTurned_ ? b : a),
+              along_(Vec3d(isTurned_ ? a : b) - from_) {}
+
+        [[nodiscard]] double side(double x, double y) const {
+            const double area = along_.x * (y - from_.y) - along_.y * (x - from_.x);
+            return isTurned_ ? -area : area;
+        }
+
+    private:
+        bool isTurned_;
+        Vec3d from_, along_;
+    };
+
     struct Pixel {
         float depth = std::numeric_limits<float>::infinity();
         uint32_t number = UINT32_MAX;

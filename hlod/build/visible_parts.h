@@ -12,8 +12,9 @@
 namespace pagoda::hlod {
 
 // Pixels each triangle covers in parallel projections along the 26 directions to the faces, edges
-// and corners of a cube, `resolution` pixels along the mesh's longest side. Two-sided, exact to a
-// pixel; ties go to the lower number.
+// and corners of a cube, `resolution` (> 0) pixels along the diagonal of the mesh's box. Two-sided,
+// exact to a pixel, and closed: nothing shows between triangles that share an edge. Ties go to the
+// lower number. O(triangles + pixels they cover).
 [[nodiscard]] std::vector<uint32_t> countVisiblePixels(std::span<const SoupTriangle> triangles,
                                                        int resolution);
 
