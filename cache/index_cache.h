@@ -1,12 +1,17 @@
-// index_cache.h: the index blocks that have been looked at. Loaded at once for now, and kept:
-// memory is proportional to what is looked at (about 120 bytes a node). The streaming run time
-// requests instead, and block() then answers null until the block has arrived. One thread (the
-// render thread). Pointers stay valid as long as the cache.
+// index_cache.h: the index blocks that have been looked at, within a byte budget, least recently
+// used first out. A block that is absent is asked for; refinement stops there meanwhile. Each
+// resident block owns a range of kMaxNodesPerBlock slots: a node's slot is a small number by which
+// traversals keep what they know of it (another node may own it later). One a database. Render
+// thread only. Pointers stay valid until the next beginFrame().
 #pragma once
 
-#include "cache/page_source.h"
+#include "cache/request_queue.h"
+#include "ooc/lattice.h"
 
 #include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -20,23 +25,61 @@ struct BlockFault {
 
 class IndexCache {
 public:
-    // `source` outlives it.
-    explicit IndexCache(PageSource& source) : source_(source) {}
+    static constexpr uint32_t kSlotsPerBlock = 512;
 
-    // Null when the block is broken (listed in faults() once, and not tried again).
-    [[nodiscard]] const ooc::IndexBlock* block(uint32_t block);
+    struct Block {
+        ooc::IndexBlock index;
+        std::vector<Box3d> boxesModel;  // of its nodes
+        uint32_t firstSlot = 0;
+    };
+    enum class BlockState { Resident, Absent, Broken };
+
+    // `source` and `requests` outlive it. Blocks used in the last two frames stay even when they
+    // are more than the budget allows to add to: no new ones come then.
+    IndexCache(const ooc::Lattice& lattice, const PageSource& source, RequestQueue& requests,
+               uint64_t budgetBytes, uint32_t database = 0);
+
+    void beginFrame(uint64_t frameIndex);
+    // Null when the block is absent (asked for) or broken (listed in faults() once).
+    [[nodiscard]] const Block* block(uint32_t block, double priority = 0.0);
+    [[nodiscard]] BlockState state(uint32_t block) const;
     // Lists a fault that the content of a block that was read has shown.
     void reportFault(uint32_t block, std::string what);
 
+    // For RequestQueue::send() and collect(), as in Residency.
+    [[nodiscard]] bool admit(const Request& request);
+    void arrive(RequestQueue::Arrival& arrival);
+
     [[nodiscard]] const std::vector<BlockFault>& faults() const noexcept { return faults_; }
+    [[nodiscard]] uint64_t missingBlocks() const noexcept { return missingBlocks_; }  // this frame
     [[nodiscard]] size_t blockCount() const noexcept { return blocks_.size(); }
-    [[nodiscard]] uint64_t usedBytes() const noexcept { return usedBytes_; }
+    [[nodiscard]] uint64_t loadedBlocks() const noexcept { return loadedBlocks_; }  // ever
+    [[nodiscard]] uint64_t usedBytes() const noexcept { return usedBytes_ + reservedBytes_; }
+    // Slots are below this.
+    [[nodiscard]] uint32_t slotCount() const noexcept { return slotCount_; }
 
 private:
-    PageSource& source_;
-    std::unordered_map<uint32_t, std::optional<ooc::IndexBlock>> blocks_;
+    struct Entry {
+        Block block;
+        uint64_t lastFrame = 0;
+        uint64_t bytes = 0;
+    };
+    void evictUntil(uint64_t freeBytes);
+    [[nodiscard]] uint32_t takeSlots(uint32_t count);
+
+    ooc::Lattice lattice_;
+    const PageSource& source_;
+    RequestQueue& requests_;
+    uint64_t budgetBytes_;
+    uint32_t database_;
+    std::unordered_map<uint32_t, std::unique_ptr<Entry>> blocks_;
+    std::map<uint32_t, std::string> broken_;
+    std::vector<uint32_t> freeSlots_;  // first slots of ranges, to be used again
     std::vector<BlockFault> faults_;
-    uint64_t usedBytes_ = 0;
+    uint64_t usedBytes_ = 0, reservedBytes_ = 0;
+    uint64_t missingBlocks_ = 0, loadedBlocks_ = 0;
+    uint32_t slotCount_ = 0;
+    uint64_t frameIndex_ = 0;
 };
 
 }  // namespace pagoda::cache

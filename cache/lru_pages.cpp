@@ -6,7 +6,7 @@
 namespace pagoda::cache {
 
 void LruPages::insert(PageId page, uint64_t sizeBytes, uint64_t frameIndex) {
-    assert(sizeBytes > 0 && sizeBytes <= budgetBytes_ - usedBytes_);
+    assert(sizeBytes > 0 && sizeBytes <= budgetBytes_ - usedBytes());
     const bool isNew = pages_.emplace(page, Entry{sizeBytes, frameIndex, false}).second;
     assert(isNew);
     static_cast<void>(isNew);
@@ -22,6 +22,12 @@ void LruPages::touch(PageId page, uint64_t frameIndex) {
         evictable_.insert({frameIndex, page});
     }
     entry.lastFrame = frameIndex;
+}
+
+void LruPages::refresh(PageId page, uint64_t beforeFrame) {
+    if (beforeFrame > 0 && pages_.at(page).lastFrame < beforeFrame - 1) {
+        touch(page, beforeFrame - 1);
+    }
 }
 
 void LruPages::pin(PageId page) {
@@ -60,18 +66,37 @@ void LruPages::erase(PageId page) {
     pages_.erase(found);
 }
 
-bool LruPages::evictOldest(std::vector<PageId>& evicted) {
-    if (evictable_.empty()) return false;
+void LruPages::reserve(uint64_t bytes) {
+    assert(bytes <= budgetBytes_ - usedBytes());
+    reservedBytes_ += bytes;
+}
+
+void LruPages::release(uint64_t bytes) {
+    assert(bytes <= reservedBytes_);
+    reservedBytes_ -= bytes;
+}
+
+bool LruPages::evictOldest(std::vector<PageId>& evicted, uint64_t beforeFrame) {
+    if (evictable_.empty() || evictable_.begin()->lastFrame >= beforeFrame) return false;
     const PageId page = evictable_.begin()->page;
     erase(page);
     evicted.push_back(page);
     return true;
 }
 
-bool LruPages::makeRoom(uint64_t neededBytes, std::vector<PageId>& evicted) {
-    if (neededBytes > budgetBytes_ - pinnedBytes_) return false;
-    while (neededBytes > budgetBytes_ - usedBytes_) {
-        const bool wasEvicted = evictOldest(evicted);
+bool LruPages::hasRoom(uint64_t neededBytes, uint64_t beforeFrame) const {
+    uint64_t freeBytes = budgetBytes_ - usedBytes();
+    for (auto key = evictable_.begin(); freeBytes < neededBytes; ++key) {
+        if (key == evictable_.end() || key->lastFrame >= beforeFrame) return false;
+        freeBytes += pages_.at(key->page).sizeBytes;
+    }
+    return true;
+}
+
+bool LruPages::makeRoom(uint64_t neededBytes, std::vector<PageId>& evicted, uint64_t beforeFrame) {
+    if (!hasRoom(neededBytes, beforeFrame)) return false;
+    while (neededBytes > budgetBytes_ - usedBytes()) {
+        const bool wasEvicted = evictOldest(evicted, beforeFrame);
         assert(wasEvicted);
         static_cast<void>(wasEvicted);
     }

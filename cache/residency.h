@@ -1,37 +1,33 @@
-// residency.h: which pages are decoded, which are in GPU memory, and what happens when one is
-// wanted. want() loads at once for now: the streaming run time replaces its inside (requests ranked
-// by priority, workers, retries) and then answers Absent where this one blocks. Callers treat
-// Absent and Failed alike: an ancestor stands in. Two budgets, never exceeded: decoded pages in
-// host memory, uploaded ones in GPU memory, both LRU. Pages that a frame wanted are pinned until
-// the next beginFrame() or unpinAll(). One thread (the render thread). Its place in a frame:
-// docs/frame.md, step 3.
+// residency.h: which pages are decoded in host memory and which are in GPU memory. Two byte
+// budgets, never exceeded: host memory holds what is being read (reserved before it is sent) and
+// decoded pages, GPU memory uploaded ones; both go least recently used first. What a frame wants is
+// pinned until the next one begins; what was used in the last two frames is not evicted for
+// something else, so that nothing on the screen gets coarser because something else loads.
+// Render thread only. Its place in a frame: docs/frame.md.
 #pragma once
 
 #include "cache/gpu_pages.h"
 #include "cache/lru_pages.h"
-#include "cache/page_source.h"
+#include "cache/request_queue.h"
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
-#include <utility>
 #include <vector>
 
 namespace pagoda::cache {
 
 enum class PageState {
-    Resident,  // uploaded and pinned for this frame
-    Absent,    // asked for, on its way
-    Failed,    // cannot be had: listed in faults()
-    NoRoom,    // pinned pages fill the GPU budget: draw a coarser cut, or what is pinned first
+    Resident,  // uploaded, and kept for this frame
+    Absent,    // asked for; an ancestor stands in
+    Failed,    // cannot be had: listed in faults(); an ancestor stands in
 };
 
 struct PageRequest {
     PageId id;
     const ooc::NodeRecord& node;
-    double priority = 0;  // greater is sooner; unused while loading is synchronous
+    double priority = 0;  // greater is sooner
 };
 
 struct PageFault {
@@ -42,54 +38,98 @@ struct PageFault {
 class Residency {
 public:
     struct Budgets {
-        uint64_t hostBytes = 0;  // decoded pages kept for a second upload; 0 keeps none
+        uint64_t hostBytes = 0;
         uint64_t gpuBytes = 0;
+        uint64_t uploadBytesPerFrame = 0;  // 0: no bound; the first page of a frame always goes
     };
     struct Counters {
-        uint64_t loadedPages = 0, bytesRead = 0;
+        uint64_t loadedPages = 0;
+        uint64_t bytesRead =
+            0;  // encoded pages that arrived, without what joined reads bring along
         uint64_t uploadedPages = 0, bytesUploaded = 0;
-        uint64_t evictedPages = 0;  // from GPU memory
+        uint64_t evictedPages = 0;                      // from GPU memory
+        uint64_t reloadedPages = 0, bytesReloaded = 0;  // read although read before
         uint64_t failedPages = 0;
+        uint64_t prefetchedBytes = 0;      // encoded, arrived before any frame wanted them
+        uint64_t usedPrefetchedBytes = 0;  // of them, wanted later
     };
 
-    // `source` and `gpu` outlive it.
-    Residency(Budgets budgets, PageSource& source, GpuPages& gpu);
+    // `requests` and `gpu` outlive it.
+    Residency(Budgets budgets, RequestQueue& requests, GpuPages& gpu);
     ~Residency();  // drops what is uploaded
     Residency(const Residency&) = delete;
     Residency& operator=(const Residency&) = delete;
 
+    // Unpins, then uploads what has arrived and was wanted lately, best first, within the budget.
     void beginFrame(uint64_t frameIndex);
-    // Loads and uploads the page if need be, and pins it. A page that failed once is not tried
-    // again.
-    [[nodiscard]] PageState want(const PageRequest& request);
+    // Uploads go on within this frame, without the frame's bound: for who waits anyway.
+    void uploadArrived();
+    // Resident: pins it. Absent: asks for it. A stand-in is drawn while something finer is on its
+    // way: it does not count as demanded.
+    [[nodiscard]] PageState want(const PageRequest& request, bool isStandIn = false);
+    // A page that would stand in for what is drawn: goes after all that is older, but is neither
+    // pinned nor demanded, so that it never keeps the cut itself out.
+    void keep(PageId page);
+    // Asks for what nothing on the screen needs yet: after everything that is wanted.
+    void prefetch(const PageRequest& request);
     [[nodiscard]] bool isResident(PageId page) const { return gpuLru_.contains(page); }
+    [[nodiscard]] PageState state(PageId page) const {
+        if (gpuLru_.contains(page)) return PageState::Resident;
+        return failed_.contains(page) ? PageState::Failed : PageState::Absent;
+    }
     void unpinAll() { gpuLru_.unpinAll(); }
 
+    void dropAll();  // from GPU memory
+
+    // For RequestQueue::send() and collect(): is there room, and here it is.
+    [[nodiscard]] bool admit(const Request& request);
+    void arrive(RequestQueue::Arrival& arrival);
+
+    // GPU bytes of all that this frame wanted but stand-ins, present or not. Above gpuBudgetBytes()
+    // the cut does not fit.
+    [[nodiscard]] uint64_t demandBytes() const noexcept { return demandBytes_; }
+    // Pages that this frame wanted and that are absent.
+    [[nodiscard]] uint64_t missingPages() const noexcept { return missingPages_; }
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
     [[nodiscard]] const std::vector<PageFault>& faults() const noexcept { return faults_; }
     [[nodiscard]] uint64_t gpuUsedBytes() const noexcept { return gpuLru_.usedBytes(); }
+    [[nodiscard]] uint64_t gpuBudgetBytes() const noexcept { return gpuLru_.budgetBytes(); }
     [[nodiscard]] uint64_t hostUsedBytes() const noexcept { return hostLru_.usedBytes(); }
+    [[nodiscard]] uint64_t hostBudgetBytes() const noexcept { return hostLru_.budgetBytes(); }
 
 private:
-    [[nodiscard]] const ooc::Page* decoded(const PageRequest& request, ooc::Page& loaded);
-    [[nodiscard]] bool load(const PageRequest& request, ooc::Page& loaded);
-    [[nodiscard]] PageState upload(PageId id, const ooc::Page& page);
-    PageState fail(PageId id, std::string what);
+    struct Wanted {
+        uint64_t frame = 0;
+        double priority = 0;
+    };
+    void upload(uint64_t boundBytes);
+    [[nodiscard]] bool uploadOne(PageId id, const ooc::Page& page);
+    void demand(PageId id, uint64_t sizeBytes, bool isStandIn);
+    void fail(PageId id, std::string what);
     void dropEvicted(std::vector<PageId>& evicted);
+    [[nodiscard]] uint64_t keepSinceFrame() const;
 
-    PageSource& source_;
+    RequestQueue& requests_;
     GpuPages& gpu_;
+    uint64_t uploadBytesPerFrame_;
     LruPages hostLru_, gpuLru_;
     std::unordered_map<PageId, ooc::Page, PageIdHash> decoded_;
-    // A page that found no room while hostLru_ is too small for it: read once, not at each try.
-    std::optional<std::pair<PageId, ooc::Page>> turnedAway_;
+    std::unordered_map<PageId, Wanted, PageIdHash> waiting_;             // decoded, to be uploaded
+    std::unordered_map<RequestKey, uint64_t, RequestKeyHash> reserved_;  // host bytes
     std::unordered_set<PageId, PageIdHash> failed_;
+    std::unordered_set<PageId, PageIdHash> everLoaded_;
+    std::unordered_map<PageId, uint64_t, PageIdHash> prefetched_;  // not yet wanted: encoded bytes
     std::vector<PageFault> faults_;
+    uint64_t onTheirWayBytes_ = 0;  // GPU bytes of pages that were sent for
+    uint64_t waitingBytes_ = 0;     // GPU bytes of pages that wait to be uploaded
+    std::unordered_set<PageId, PageIdHash> demanded_;  // in this frame
+    uint64_t demandBytes_ = 0, missingPages_ = 0;
     Counters counters_;
     uint64_t frameIndex_ = 0;
 };
 
-// Bytes of a decoded page in host memory.
+// Bytes of a decoded page in host memory, and their bound as far as the record tells.
 [[nodiscard]] uint64_t decodedBytes(const ooc::Page& page);
+[[nodiscard]] uint64_t decodedBytes(const ooc::NodeRecord& node);
 
 }  // namespace pagoda::cache

@@ -90,6 +90,12 @@ GlContext::~GlContext() {
     // No eglTerminate: the display is shared with any other context of this process.
 }
 
+bool isSoftwareRenderer() {
+    const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+    const std::string_view renderer = name != nullptr ? name : "";
+    return renderer.starts_with("llvmpipe") || renderer.starts_with("softpipe");
+}
+
 void throwOnGlError(const char* where) {
     const GLenum code = glGetError();
     if (code == GL_NO_ERROR) return;

@@ -29,6 +29,10 @@ private:
     std::string rendererName_;
 };
 
+// Does the current context draw on the CPU? There an answer that is polled for makes it begin work
+// that it would rather gather, and depth is read as fast as memory.
+[[nodiscard]] bool isSoftwareRenderer();
+
 // Throws Error for what GL has to complain about since the last call; `where` says what was done.
 void throwOnGlError(const char* where);
 

@@ -172,6 +172,13 @@ uint64_t MeshStore::sizeBytes(const ooc::Page& page) const {
     return std::max(granules, uint64_t{1}) * kGranuleBytes;
 }
 
+uint64_t MeshStore::sizeBytes(const ooc::NodeRecord& node) const {
+    // A page with normals may still have triangles without: their face normals are counted.
+    const Counts counts{node.vertexCount, size_t{3} * node.triangleCount, node.triangleCount};
+    const uint64_t granules = (counts.bytes() + kGranuleBytes - 1) / kGranuleBytes;
+    return std::max(granules, uint64_t{1}) * kGranuleBytes;
+}
+
 std::optional<MeshStore::Place> MeshStore::allocate(uint64_t sizeBytes) {
     for (size_t chunk = 0; chunk < chunks_.size(); ++chunk) {
         if (const auto offset = chunks_[chunk].arena.allocate(sizeBytes))
@@ -193,7 +200,8 @@ MeshStore::Upload MeshStore::upload(cache::PageId id, const ooc::Page& page) {
     const Counts counts = countOf(page);
     const uint64_t neededBytes = sizeBytes(page);
     if (counts.vertices > kMaxVertices || neededBytes > kChunkBytes) return Upload::Refused;
-    const auto place = allocate(neededBytes);
+    auto place = allocate(neededBytes);
+    if (!place && compactFor(neededBytes)) place = allocate(neededBytes);
     if (!place) return Upload::NoRoom;
     GpuPage packed = pack(page, counts, staging_);
     const uint64_t firstIndexByte = place->offset + counts.vertexBytes();
@@ -207,7 +215,7 @@ MeshStore::Upload MeshStore::upload(cache::PageId id, const ooc::Page& page) {
         glNamedBufferSubData(buffer(place->chunk), static_cast<GLintptr>(place->offset),
                              static_cast<GLsizeiptr>(staging_.size()), staging_.data());
     }
-    pages_.emplace(id, Entry{place->offset, std::move(packed)});
+    pages_.emplace(id, Entry{place->offset, neededBytes, std::move(packed)});
     return Upload::Done;
 }
 
@@ -216,6 +224,54 @@ void MeshStore::drop(cache::PageId id) {
     assert(found != pages_.end());
     chunks_[found->second.page.chunk].arena.free(found->second.offset);
     pages_.erase(found);
+}
+
+bool MeshStore::compactFor(uint64_t sizeBytes) {
+    size_t best = 0;
+    uint64_t mostFree = 0;
+    for (size_t chunk = 0; chunk < chunks_.size(); ++chunk) {
+        const cache::Arena& arena = chunks_[chunk].arena;
+        const uint64_t free = arena.capacityBytes() - arena.usedBytes();
+        if (free > mostFree) {
+            mostFree = free;
+            best = chunk;
+        }
+    }
+    if (mostFree < sizeBytes) return false;
+    compact(best);
+    return true;
+}
+
+void MeshStore::compact(size_t chunk) {
+    std::vector<Entry*> entries;
+    for (auto& [id, entry] : pages_) {
+        if (entry.page.chunk == chunk) entries.push_back(&entry);
+    }
+    std::sort(entries.begin(), entries.end(),
+              [](const Entry* a, const Entry* b) { return a->offset < b->offset; });
+    glFinish();  // llvmpipe 22.3 does not order the copies behind shaders that read from the buffer
+    cache::Arena packed(chunks_[chunk].arena.capacityBytes(), kGranuleBytes);
+    for (Entry* entry : entries) move(*entry, *packed.allocate(entry->bytes));
+    chunks_[chunk].arena = std::move(packed);
+    throwOnGlError("moving pages");
+}
+
+// Downwards, in pieces no longer than the way: GL forbids copies that overlap within a buffer.
+void MeshStore::move(Entry& entry, uint64_t toOffset) {
+    const uint64_t way = entry.offset - toOffset;
+    if (way == 0) return;
+    const GlId id = buffer(entry.page.chunk);
+    for (uint64_t done = 0; done < entry.bytes; done += way) {
+        glCopyNamedBufferSubData(id, id, static_cast<GLintptr>(entry.offset + done),
+                                 static_cast<GLintptr>(toOffset + done),
+                                 static_cast<GLsizeiptr>(std::min(way, entry.bytes - done)));
+    }
+    entry.offset = toOffset;
+    entry.page.baseVertex -= static_cast<uint32_t>(way / sizeof(GpuVertex));
+    entry.page.firstIndex -= static_cast<uint32_t>(way / sizeof(uint16_t));
+    if (entry.page.firstNormal != GpuPage::kNoNormals) {
+        entry.page.firstNormal -= static_cast<uint32_t>(way / sizeof(uint32_t));
+    }
 }
 
 const GpuPage& MeshStore::page(cache::PageId id) const {

@@ -1,7 +1,8 @@
 // mesh_store.h: pages in GPU memory: one buffer of fixed size, in which each page has one range
-// with its vertices and 16-bit indices. Implements what cache/ asks of GPU memory. Also keeps, in
-// host memory, what a translucent page needs to be sorted each frame. Render thread only, context
-// current.
+// with its vertices and 16-bit indices. Where gaps are too short for a page but long enough
+// together, ranges are moved: memory does not fragment. Implements what cache/ asks of GPU memory.
+// Also keeps, in host memory, what a translucent page needs to be sorted each frame. Render thread
+// only, context current.
 #pragma once
 
 #include "cache/arena.h"
@@ -43,16 +44,18 @@ public:
     explicit MeshStore(uint64_t budgetBytes) : budgetBytes_(budgetBytes) {}
 
     uint64_t sizeBytes(const ooc::Page& page) const override;
+    uint64_t sizeBytes(const ooc::NodeRecord& node) const override;
     Upload upload(cache::PageId id, const ooc::Page& page) override;
     void drop(cache::PageId id) override;
 
     // The page was uploaded (asserted). Valid until it is dropped.
     [[nodiscard]] const GpuPage& page(cache::PageId id) const;
+    [[nodiscard]] bool contains(cache::PageId id) const { return pages_.contains(id); }
     [[nodiscard]] GlId buffer(size_t chunk) const { return chunks_[chunk].buffer.id(); }
 
 private:
     struct Entry {
-        uint64_t offset = 0;
+        uint64_t offset = 0, bytes = 0;
         GpuPage page;
     };
     struct Chunk {
@@ -64,6 +67,10 @@ private:
         uint64_t offset;
     };
     [[nodiscard]] std::optional<Place> allocate(uint64_t sizeBytes);
+    // Closes the gaps of the chunk with the most free bytes. False when they are not enough.
+    [[nodiscard]] bool compactFor(uint64_t sizeBytes);
+    void compact(size_t chunk);
+    void move(Entry& entry, uint64_t toOffset);
 
     uint64_t budgetBytes_, chunkBytes_ = 0;
     std::vector<Chunk> chunks_;

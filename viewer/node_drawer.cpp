@@ -26,6 +26,10 @@ NodeDrawer::NodeDrawer(const MeshStore& store)
 
 void NodeDrawer::bind(const NodeProgram& program, const LatticeView& view) {
     view_ = view;
+    rebind(program);
+}
+
+void NodeDrawer::rebind(const NodeProgram& program) {
     glUseProgram(program.id());
     glBindVertexArray(array_.id());
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commandBuffer_.id());

@@ -25,6 +25,8 @@ public:
 
     // Fixes the view for the draws that follow.
     void bind(const NodeProgram& program, const LatticeView& view);
+    // Goes on with it after other programs have drawn.
+    void rebind(const NodeProgram& program);
 
     // Triangles drawn. Items in the order given; ties at equal depth fall to the first drawn.
     uint64_t drawOpaque(std::span<const DrawItem> items);

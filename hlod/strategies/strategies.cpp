@@ -7,6 +7,10 @@ namespace {
 
 constexpr std::array kStrategies = {
     StrategyRow{"frustum", "SSE cut, frustum culling only", &makeFrustumStrategy},
+    StrategyRow{"bool", "coherent culling, queries as yes or no, SSE alone", &makeBoolStrategy},
+    StrategyRow{"sw", "hierarchical stop-and-wait, VMSSE: the ideal set", &makeSwStrategy},
+    StrategyRow{"simp", "VMSSE, predicted from the last answer in order", &makeSimpStrategy},
+    StrategyRow{"coh", "coherent HLOD culling: refine, stop or delay", &makeCohStrategy},
 };
 
 }  // namespace
@@ -15,9 +19,9 @@ std::span<const StrategyRow> strategies() {
     return kStrategies;
 }
 
-std::unique_ptr<Strategy> makeStrategy(std::string_view name) {
+std::unique_ptr<Strategy> makeStrategy(std::string_view name, const StrategyOptions& options) {
     for (const StrategyRow& row : kStrategies) {
-        if (row.name == name) return row.make();
+        if (row.name == name) return row.make(options);
     }
     return nullptr;
 }

@@ -1,4 +1,4 @@
-// strategies.h: the table of strategies: name, paper, what it is.
+// strategies.h: the table of strategies: name, paper, what it is, and what they can be told.
 #pragma once
 
 #include "hlod/view/strategy.h"
@@ -9,17 +9,28 @@
 
 namespace pagoda::hlod {
 
+struct StrategyOptions {
+    // The sigmoid bias (paper 004): s blends linear (0) and sigmoid (1), t is its turnover: smaller
+    // keeps more detail. Both in [0, 1]. The paper's are s = 1, t = 0.5.
+    double biasS = 0.5, biasT = 0.5;
+};
+
 struct StrategyRow {
     std::string_view name;
     std::string_view what;
-    std::unique_ptr<Strategy> (*make)();
+    std::unique_ptr<Strategy> (*make)(const StrategyOptions& options);
 };
 
 [[nodiscard]] std::span<const StrategyRow> strategies();
 // Null for a name that is not in the table.
-[[nodiscard]] std::unique_ptr<Strategy> makeStrategy(std::string_view name);
+[[nodiscard]] std::unique_ptr<Strategy> makeStrategy(std::string_view name,
+                                                     const StrategyOptions& options = {});
 
-// Each strategy's own file defines one of these.
-[[nodiscard]] std::unique_ptr<Strategy> makeFrustumStrategy();
+// Each strategy's own file defines these.
+[[nodiscard]] std::unique_ptr<Strategy> makeFrustumStrategy(const StrategyOptions& options);
+[[nodiscard]] std::unique_ptr<Strategy> makeBoolStrategy(const StrategyOptions& options);
+[[nodiscard]] std::unique_ptr<Strategy> makeSwStrategy(const StrategyOptions& options);
+[[nodiscard]] std::unique_ptr<Strategy> makeSimpStrategy(const StrategyOptions& options);
+[[nodiscard]] std::unique_ptr<Strategy> makeCohStrategy(const StrategyOptions& options);
 
 }  // namespace pagoda::hlod

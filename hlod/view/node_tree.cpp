@@ -26,35 +26,35 @@ bool areChildrenOf(const ooc::NodeRecord& parent, std::span<const ooc::NodeRecor
 
 }  // namespace
 
-Node NodeTree::root() {
-    const ooc::IndexBlock* block = index_.block(0);
-    if (block == nullptr || block->nodes.empty()) {
-        const std::string why =
-            index_.faults().empty() ? "it is empty" : index_.faults().front().what;
-        throw Error("", "index block 0", "the root of the database cannot be read: " + why,
-                    "build the database again, or fetch it again; `pagoda verify` lists all that "
-                    "is broken");
+std::optional<Node> NodeTree::root() {
+    const cache::IndexCache::Block* block = index_.block(0);
+    if (block != nullptr && !block->index.nodes.empty()) {
+        return NodeRange(*block, 0, 1, database_)[0];
     }
-    return node(block->nodes.front());
+    if (block == nullptr && index_.state(0) == cache::IndexCache::BlockState::Absent) return {};
+    const std::string why = index_.faults().empty() ? "it is empty" : index_.faults().front().what;
+    throw Error("", "index block 0", "the root of the database cannot be read: " + why,
+                "build the database again, or fetch it again; `pagoda verify` lists all that "
+                "is broken");
 }
 
-std::span<const ooc::NodeRecord> NodeTree::children(const Node& node) {
+NodeRange NodeTree::children(const Node& node, double priority) {
     const ooc::NodeRecord& record = *node.record;
     const uint32_t count = record.childCount();
     if (count == 0) return {};
-    const ooc::IndexBlock* block = index_.block(record.childBlock);
+    const cache::IndexCache::Block* block = index_.block(record.childBlock, priority);
     if (block == nullptr) return {};
-    const size_t available = block->nodes.size();
+    const size_t available = block->index.nodes.size();
     if (record.childIndex > available || count > available - record.childIndex) {
         index_.reportFault(record.childBlock, "children are beyond the end of the block");
         return {};
     }
-    const auto children = std::span(block->nodes).subspan(record.childIndex, count);
+    const auto children = std::span(block->index.nodes).subspan(record.childIndex, count);
     if (!areChildrenOf(record, children)) {
         index_.reportFault(record.childBlock, "children do not belong to their parent");
         return {};
     }
-    return children;
+    return {*block, record.childIndex, count, database_};
 }
 
 }  // namespace pagoda::hlod

@@ -1,7 +1,7 @@
 // visibility.h: how a strategy asks what is seen. Stated here; implemented by GL queries (viewer/),
-// a software rasteriser (hlod/raster/) and tests. A strategy either waits or
-// treats an unknown answer as visible, never as hidden: pictures stay right at every latency. A box
-// that holds the eye or crosses the near plane is visible, unasked. Render thread only.
+// a software rasteriser (hlod/raster/) and tests. A strategy either waits or treats an unknown
+// answer as visible, never as hidden: pictures stay right at every latency. A box that holds the
+// eye or crosses the near plane is visible, unasked (View::crossesNear). Render thread only.
 #pragma once
 
 #include "hlod/view/node_tree.h"
@@ -19,15 +19,16 @@ struct OrientedBox {
     glm::dmat3 axes{1.0};
 };
 
-// What is tested: a box, or a resident node's own mesh (paper 000).
-using QueryShape = std::variant<OrientedBox, Node>;
+// What is tested: a box (axis-aligned or oriented), or a resident node's own mesh (paper 000).
+using QueryShape = std::variant<Box3d, OrientedBox, Node>;
 
 struct QueryTicket {
     uint64_t value = 0;
     [[nodiscard]] bool operator==(const QueryTicket&) const = default;
 };
 
-// Counts pixels of shapes that pass the depth test against what was drawn before the query.
+// Counts pixels of shapes that pass the depth test against what was drawn before the query. A
+// ticket is answered once: poll() or wait() that gives the answer spends it.
 class CountingVisibility {
 public:
     virtual ~CountingVisibility() = default;
@@ -35,8 +36,21 @@ public:
     // Visible pixels, or nullopt while pending. An answer delayed by F frames is pending until F
     // later frames have begun.
     [[nodiscard]] virtual std::optional<uint64_t> poll(QueryTicket ticket) = 0;
-    // The answer, now. A delayed one adds its frame times to the recorded (simulated) stall.
+    // The answer, now.
     [[nodiscard]] virtual uint64_t wait(QueryTicket ticket) = 0;
+    // Is poll() free? Where it makes the device begin what it would rather gather, it is not.
+    [[nodiscard]] virtual bool isPollFree() const { return false; }
+};
+
+// Tests boxes against a pyramid of the depths drawn so far, at once.
+class PyramidVisibility {
+public:
+    virtual ~PyramidVisibility() = default;
+    // Takes the depths of all that was drawn so far.
+    virtual void build() = 0;
+    // 0 only when the box is hidden by what was drawn before build(); else an estimate, from above,
+    // of its visible pixels.
+    [[nodiscard]] virtual uint64_t visiblePixels(const Box3d& boxModel) = 0;
 };
 
 // Pixels [minX, maxX) x [minY, maxY), from the top left.

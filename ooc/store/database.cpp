@@ -15,17 +15,24 @@ std::string named(const char* what, uint64_t number) {
     return std::string(what) + " " + std::to_string(number);
 }
 
-// Reads a range and holds it against its checksum.
-Loaded<std::vector<std::byte>> readChecked(const File& file, uint64_t offset, uint64_t bytes,
-                                           uint64_t checksum) {
+constexpr const char* kChecksumDiffers = "checksum differs";
+
+Loaded<std::vector<std::byte>> readBytes(const File& file, uint64_t offset, uint64_t bytes) {
     try {
         std::vector<std::byte> data(bytes);
         file.readAt(offset, data);
-        if (hash64(data) != checksum) return {{}, "checksum differs"};
         return {std::move(data), {}};
     } catch (const Error& error) {
         return {{}, error.place() + ": " + error.problem()};
     }
+}
+
+// Reads a range and holds it against its checksum.
+Loaded<std::vector<std::byte>> readChecked(const File& file, uint64_t offset, uint64_t bytes,
+                                           uint64_t checksum) {
+    auto data = readBytes(file, offset, bytes);
+    if (data.value && hash64(*data.value) != checksum) return {{}, kChecksumDiffers};
+    return data;
 }
 
 std::vector<std::byte> readOrThrow(const File& file, const FileRange& range, const char* place) {
@@ -194,12 +201,20 @@ uint32_t Database::blockCount() const noexcept {
 Loaded<IndexBlock> Database::readBlock(uint32_t block) const {
     if (block >= indexRanges_.size()) return {{}, "no such block"};
     const Range& range = indexRanges_[block];
-    auto bytes = readChecked(file_, range.offset, range.bytes, range.checksum);
+    auto bytes = readBytes(file_, range.offset, range.bytes);
     if (!bytes.value) return {{}, bytes.fault};
+    return decodeBlock(block, *bytes.value);
+}
 
+Loaded<IndexBlock> Database::decodeBlock(uint32_t block, std::span<const std::byte> bytes) const {
+    if (block >= indexRanges_.size()) return {{}, "no such block"};
+    const Range& range = indexRanges_[block];
+    if (bytes.size() != range.bytes || hash64(bytes) != range.checksum) {
+        return {{}, kChecksumDiffers};
+    }
     IndexBlock loaded;
     loaded.nodes.reserve(nodesIn(range));
-    ByteReader in(*bytes.value);
+    ByteReader in(bytes);
     for (uint32_t i = 0; i < nodesIn(range); ++i) loaded.nodes.push_back(getNode(in));
     for (uint32_t i = 0; i < loaded.nodes.size(); ++i) {
         const NodeRecord& node = loaded.nodes[i];
@@ -219,9 +234,19 @@ Loaded<std::vector<std::byte>> Database::readPageBytes(const NodeRecord& node) c
 }
 
 Loaded<Page> Database::readPage(const NodeRecord& node) const {
-    const auto bytes = readPageBytes(node);
+    if (node.pageOffset > pagesEnd_ || node.pageBytes > pagesEnd_ - node.pageOffset) {
+        return {{}, "page lies outside of the pages"};
+    }
+    const auto bytes = readBytes(file_, node.pageOffset, node.pageBytes);
     if (!bytes.value) return {{}, bytes.fault};
-    DecodeResult decoded = decodePage(*bytes.value);
+    return decodePage(node, *bytes.value);
+}
+
+Loaded<Page> Database::decodePage(const NodeRecord& node, std::span<const std::byte> bytes) const {
+    if (bytes.size() != node.pageBytes || hash64(bytes) != node.pageChecksum) {
+        return {{}, kChecksumDiffers};
+    }
+    DecodeResult decoded = ooc::decodePage(bytes);
     if (!decoded.page) return {{}, std::move(decoded.fault)};
     if (std::string fault = checkPage(*decoded.page, node, header_); !fault.empty()) {
         return {{}, std::move(fault)};

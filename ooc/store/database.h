@@ -54,11 +54,17 @@ public:
     // file, children in an existing place further on. Their ids are checked where they lie in the
     // same block; who follows a reference into another block compares with NodeRecord::childId().
     [[nodiscard]] Loaded<IndexBlock> readBlock(uint32_t block) const;
+    // The same from the bytes of indexRanges()[block], checked against its checksum.
+    [[nodiscard]] Loaded<IndexBlock> decodeBlock(uint32_t block,
+                                                 std::span<const std::byte> bytes) const;
     // The root is record 0 of block 0.
     [[nodiscard]] Loaded<std::vector<std::byte>> readPageBytes(const NodeRecord& node) const;
     // The page decoded and held against its record: counts, box, flags, and object and material
     // ids.
     [[nodiscard]] Loaded<Page> readPage(const NodeRecord& node) const;
+    // The same from bytes read elsewhere, checked against the record's checksum.
+    [[nodiscard]] Loaded<Page> decodePage(const NodeRecord& node,
+                                          std::span<const std::byte> bytes) const;
 
     [[nodiscard]] Loaded<ObjectRecord> readObject(
         uint32_t object) const;  // loads its block: for single look-ups

@@ -3,6 +3,7 @@
 #include "hlod/view/camera.h"
 #include "ooc/base/error.h"
 #include "ooc/store/database.h"
+#include "tools/runtime_options.h"
 #include "tools/session.h"
 #include "viewer/gl_context.h"
 #include "viewer/renderer.h"
@@ -37,9 +38,8 @@ struct Arguments {
     std::string database, output;
     std::string camera, view = "iso", size, up;
     double fovyDegrees = 0;
-    double tauPx = 1;
-    std::string detail, strategy = "frustum", depth, ids, background;
-    std::string hostBudget = "256MiB", gpuBudget = "1GiB";
+    std::string detail, depth, ids, background;
+    RuntimeOptions runtime;
     bool isReference = false, wantsStats = false;
 };
 
@@ -98,15 +98,17 @@ hlod::Camera makeCamera(const Arguments& arguments, const Box3d& box, hlod::UpAx
 hlod::FrameRecord draw(viewer::Renderer& renderer, const Arguments& arguments,
                        const hlod::Camera& camera, hlod::UpAxis up, Progress& progress) {
     viewer::RenderOptions options;
-    options.tauPx = arguments.detail == "full" ? 0.0 : arguments.tauPx;
+    options.tauPx = arguments.detail == "full" ? 0.0 : arguments.runtime.tauPx;
     options.background = parseBackground(arguments.background);
     options.worldUp = up == hlod::UpAxis::Y ? Vec3f(0, 1, 0) : Vec3f(0, 0, 1);
     if (arguments.isReference) {
         return renderer.renderReference(camera, options, [&] { progress.check(); });
     }
-    const auto strategy = hlod::makeStrategy(arguments.strategy);
-    hlod::FrameRecord record = renderer.render(camera, *strategy, options);
-    record.strategy = arguments.strategy;
+    const auto strategy =
+        hlod::makeStrategy(arguments.runtime.strategy, arguments.runtime.strategyOptions());
+    hlod::FrameRecord record = renderer.render(camera, *strategy, options,
+                                               [&](const hlod::FrameRecord&) { progress.check(); });
+    record.strategy = arguments.runtime.strategy;
     return record;
 }
 
@@ -123,8 +125,7 @@ void render(const Arguments& arguments, Session& session) {
     const viewer::GlContext context = viewer::GlContext::headless();
     cache::DatabaseSource source(database);
     viewer::Renderer renderer(database.header().lattice, source,
-                              {.hostBytes = parseBytes(arguments.hostBudget),
-                               .gpuBytes = parseBytes(arguments.gpuBudget)});
+                              arguments.runtime.rendererOptions());
     const hlod::UpAxis up = upAxis(arguments, database);
     const hlod::Camera camera = makeCamera(arguments, renderer.sceneBox(), up);
     hlod::FrameRecord record = draw(renderer, arguments, camera, up, *session.progress);
@@ -137,7 +138,7 @@ void render(const Arguments& arguments, Session& session) {
     if (record.effectiveTauPx > record.tauPx) {
         session.progress->warn(
             fmt::format("the cut at tau {:g} does not fit --gpu-budget {}: drawn at tau {:g}",
-                        record.tauPx, arguments.gpuBudget, record.effectiveTauPx));
+                        record.tauPx, arguments.runtime.gpuBudget, record.effectiveTauPx));
     }
     if (arguments.wantsStats) std::cout << hlod::frameRecordToJson(record) << '\n';
     for (const std::string& fault : record.faults) {
@@ -168,23 +169,18 @@ void addCameraOptions(CLI::App& command, Arguments& arguments) {
 
 void addDetailOptions(CLI::App& command, Arguments& arguments) {
     command
-        .add_option("--tau", arguments.tauPx, "Error allowed on the screen, pixels; 0: every leaf")
+        .add_option("--tau", arguments.runtime.tauPx,
+                    "Error allowed on the screen, pixels; 0: every leaf")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
     command.add_option("--detail", arguments.detail, "full: as --tau 0")
         ->check(CLI::IsMember({"full"}));
-    std::vector<std::string> names;
-    for (const hlod::StrategyRow& row : hlod::strategies()) names.emplace_back(row.name);
-    command.add_option("--strategy", arguments.strategy, "How the cut is found")
-        ->check(CLI::IsMember(names))
+    command.add_option("--strategy", arguments.runtime.strategy, "How the cut is found")
+        ->check(CLI::IsMember(strategyNames()))
         ->capture_default_str();
     command.add_flag("--reference", arguments.isReference,
                      "Draw all leaves in the frustum, streamed within the budgets");
-    command.add_option("--host-budget", arguments.hostBudget, "Bytes for decoded pages")
-        ->capture_default_str();
-    command
-        .add_option("--gpu-budget", arguments.gpuBudget, "Bytes for uploaded pages (1MiB or more)")
-        ->capture_default_str();
+    addRuntimeOptions(command, arguments.runtime);
 }
 
 }  // namespace

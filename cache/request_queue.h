@@ -1,0 +1,112 @@
+// request_queue.h: what is asked for and not here yet: ranked anew each frame, joined where
+// neighbours on disk are both wanted, dropped when nobody asks any more, tried again with growing
+// pauses when it fails. Knows ranges and numbers, not what they hold. Render thread only. Its place
+// in a frame: docs/frame.md.
+#pragma once
+
+#include "cache/clock.h"
+#include "cache/load_queue.h"
+
+#include <compare>
+#include <cstdint>
+#include <functional>
+#include <unordered_map>
+#include <vector>
+
+namespace pagoda::cache {
+
+struct RequestKey {
+    uint32_t database = 0;
+    bool isBlock = false;
+    uint64_t id = 0;  // NodeId::value, or a block's number
+    [[nodiscard]] auto operator<=>(const RequestKey&) const = default;
+};
+
+struct RequestKeyHash {
+    [[nodiscard]] size_t operator()(const RequestKey& key) const noexcept {
+        return static_cast<size_t>(
+            (key.id + (uint64_t{key.database} << 59) + (uint64_t{key.isBlock} << 63)) *
+            0x9E3779B97F4A7C15ull);
+    }
+};
+
+struct Request {
+    RequestKey key;
+    ByteRange range;
+    double priority = 0;      // greater is sooner; prefetched ones come after all others
+    bool isPrefetch = false;  // nothing that is on the screen needs it yet
+    ooc::NodeRecord node{};   // of a page
+};
+
+class RequestQueue {
+public:
+    struct Limits {
+        size_t readsInFlight = 16;
+        uint64_t joinGapBytes = 8 << 10;  // bytes read in vain rather than a second read
+        uint64_t readBytes = 1 << 20;     // of one joined read
+        uint32_t attempts = 4;
+        double firstPauseS = 0.02;  // doubles with each failure
+    };
+    struct Counters {
+        uint64_t asked = 0, sent = 0, reads = 0, cancelled = 0, retried = 0, failed = 0;
+        uint64_t bytesAsked = 0;  // ranges of what was sent
+        uint64_t bytesRead = 0;   // with the gaps of joined reads
+    };
+    // What came of a request. With a fault every attempt has failed; with neither page, block nor
+    // fault this one has, and there will be another: what admit() reserved is given back meanwhile.
+    struct Arrival {
+        Request request;
+        LoadResult result;
+    };
+
+    // Both outlive it.
+    RequestQueue(LoadQueue& loads, Clock& clock, Limits limits);
+
+    void beginFrame() { ++frame_; }
+    // Asks, or ranks anew: within a frame the greatest priority holds, and a want beats a prefetch.
+    // True the first time in a frame that it is wanted (not prefetched).
+    bool ask(const Request& request);
+    // Sends the best ones while reads are free. `admit` says whether there is room for it (and
+    // reserves it); one that is not admitted waits, and so does everything less urgent of its kind
+    // (pages or blocks): the best must not starve. Requests nobody asked for in this frame are
+    // forgotten.
+    void send(const std::function<bool(const Request&)>& admit);
+    // Appends what came of requests that were sent.
+    void collect(std::vector<Arrival>& arrivals);
+    // Blocks until collect() may give something: an arrival, or the end of a pause (then send()
+    // goes on). False when nothing is on its way.
+    [[nodiscard]] bool waitForArrival();
+
+    [[nodiscard]] bool isAsked(const RequestKey& key) const { return requests_.contains(key); }
+    [[nodiscard]] bool isSent(const RequestKey& key) const;
+    [[nodiscard]] size_t sentCount() const noexcept { return tickets_.size(); }
+    [[nodiscard]] size_t waitingCount() const noexcept {
+        return requests_.size() - tickets_.size();
+    }
+    [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
+
+private:
+    struct Entry {
+        Request request;
+        uint64_t frame = 0;   // when it was last asked for
+        uint64_t ticket = 0;  // 0: not sent
+        uint32_t failures = 0;
+        double notBeforeS = 0;
+    };
+    void forgetStale();
+    void rank();
+    void sendRead(size_t first, const std::function<bool(const Request&)>& admit);
+
+    LoadQueue& loads_;
+    Clock& clock_;
+    Limits limits_;
+    std::unordered_map<RequestKey, Entry, RequestKeyHash> requests_;
+    std::unordered_map<uint64_t, RequestKey> tickets_;
+    std::vector<Entry*> ranked_;    // waiting, best first
+    std::vector<Entry*> byOffset_;  // the same, by place on disk
+    std::vector<LoadResult> results_;
+    uint64_t frame_ = 0, nextTicket_ = 1;
+    Counters counters_;
+};
+
+}  // namespace pagoda::cache

@@ -1,0 +1,128 @@
+#include "cache/thread_loads.h"
+
+#include <algorithm>
+#include <cassert>
+#include <new>
+#include <utility>
+
+namespace pagoda::cache {
+
+LoadResult decodeItem(const PageSource& source, const LoadItem& item,
+                      std::span<const std::byte> bytes) {
+    LoadResult result;
+    result.ticket = item.ticket;
+    if (item.isBlock) {
+        auto loaded = source.decodeBlock(item.block, bytes);
+        result.block = std::move(loaded.value);
+        result.fault = std::move(loaded.fault);
+    } else {
+        auto loaded = source.decodePage(item.node, bytes);
+        result.page = std::move(loaded.value);
+        result.fault = std::move(loaded.fault);
+    }
+    return result;
+}
+
+ThreadLoads::ThreadLoads(std::vector<const PageSource*> sources, size_t threadCount)
+    : sources_(std::move(sources)) {
+    for (size_t i = 0; i < std::max<size_t>(threadCount, 1); ++i) {
+        threads_.emplace_back([this] { work(); });
+    }
+}
+
+ThreadLoads::~ThreadLoads() {
+    {
+        const std::lock_guard lock(queueMutex_);
+        isStopping_ = true;
+        queue_.clear();
+    }
+    hasWork_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+}
+
+void ThreadLoads::send(std::vector<LoadItem> items) {
+    assert(!items.empty());
+    {
+        const std::lock_guard lock(queueMutex_);
+        queue_.push_back(std::move(items));
+    }
+    hasWork_.notify_one();
+}
+
+void ThreadLoads::collect(std::vector<LoadResult>& arrived) {
+    const std::lock_guard lock(queueMutex_);
+    std::move(arrived_.begin(), arrived_.end(), std::back_inserter(arrived));
+    arrived_.clear();
+}
+
+bool ThreadLoads::waitForArrival() {
+    std::unique_lock lock(queueMutex_);
+    hasArrivals_.wait(lock,
+                      [this] { return !arrived_.empty() || (queue_.empty() && reading_ == 0); });
+    return !arrived_.empty();
+}
+
+size_t ThreadLoads::readsInFlight() const {
+    const std::lock_guard lock(queueMutex_);
+    return queue_.size() + reading_;
+}
+
+void ThreadLoads::work() {
+    std::vector<std::byte> buffer;
+    while (true) {
+        std::vector<LoadItem> items;
+        {
+            std::unique_lock lock(queueMutex_);
+            hasWork_.wait(lock, [this] { return isStopping_ || !queue_.empty(); });
+            if (isStopping_) return;
+            items = std::move(queue_.front());
+            queue_.pop_front();
+            ++reading_;
+        }
+        load(items, buffer);
+        {
+            const std::lock_guard lock(queueMutex_);
+            --reading_;
+        }
+        hasArrivals_.notify_all();
+    }
+}
+
+void ThreadLoads::load(const std::vector<LoadItem>& items, std::vector<std::byte>& buffer) {
+    const PageSource& source = *sources_[items.front().database];
+    const uint64_t begin = items.front().range.offset;
+    bool isRead = false;
+    // Sizes come from a file: one that lies must not end the program.
+    try {
+        buffer.resize(items.back().range.end() - begin);
+        isRead = source.read(begin, buffer).empty();
+    } catch (const std::bad_alloc&) {
+        buffer.clear();
+    }
+    for (const LoadItem& item : items) {
+        try {
+            if (isRead) {
+                const std::span<const std::byte> whole(buffer);
+                deliver(decodeItem(source, item,
+                                   whole.subspan(item.range.offset - begin, item.range.bytes)));
+                continue;
+            }
+            std::vector<std::byte> alone(item.range.bytes);
+            std::string fault = source.read(item.range.offset, alone);
+            deliver(fault.empty() ? decodeItem(source, item, alone)
+                                  : LoadResult{item.ticket, {}, {}, std::move(fault)});
+        } catch (const std::bad_alloc&) {
+            deliver({item.ticket, {}, {}, "not enough memory to decode it"});
+        }
+    }
+}
+
+void ThreadLoads::deliver(LoadResult result) {
+    {
+        const std::lock_guard lock(queueMutex_);
+        arrived_.push_back(std::move(result));
+    }
+    hasArrivals_.notify_all();
+}
+
+}  // namespace pagoda::cache

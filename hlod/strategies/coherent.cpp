@@ -1,0 +1,293 @@
+#include "hlod/strategies/coherent.h"
+
+#include "hlod/strategies/bias.h"
+#include "hlod/view/screen_box.h"
+
+#include <algorithm>
+
+namespace pagoda::hlod {
+namespace {
+
+constexpr uint32_t kNoParent = UINT32_MAX;
+
+}  // namespace
+
+void CoherentStrategy::traverse(FrameContext& frame) {
+    frame_ = &frame;
+    counting_ = frame.sink.counting();
+    ++frameNumber_;
+    visits_.clear();
+    const auto root = frame.tree.root();
+    if (!root) return;
+    memory_.fit(frame.tree);
+    push(*root, kNoParent, false);
+    const bool doesPoll = counting_ != nullptr && counting_->isPollFree();
+    while (!queue_.empty() || !pending_.empty()) {
+        while (!pending_.empty()) {
+            const uint32_t oldest = pending_.front();
+            std::optional<uint64_t> visiblePx;
+            if (doesPoll) visiblePx = counting_->poll(visits_[oldest].ticket);
+            if (!visiblePx) {
+                if (!queue_.empty()) break;
+                ++frame.record.waits;
+                visiblePx = counting_->wait(visits_[oldest].ticket);
+            }
+            pending_.pop_front();
+            answer(oldest, *visiblePx);
+        }
+        if (!queue_.empty()) visit(pop());
+    }
+}
+
+// Is `a` taken after `b`? Nearest first; ties by id.
+bool CoherentStrategy::isLater(uint32_t a, uint32_t b) const {
+    const Visit &p = visits_[a], &q = visits_[b];
+    return p.distance != q.distance ? p.distance > q.distance : p.node.page() > q.node.page();
+}
+
+void CoherentStrategy::push(const Node& node, uint32_t parent, bool isProbe) {
+    Visit visit;
+    visit.node = node;
+    visit.parent = parent;
+    visit.distance = static_cast<float>(frame_->view.distanceTo(*node.boxModel));
+    visit.isProbe = isProbe;
+    if (parent != kNoParent && frame_->tauPx > 0.0) {
+        visit.excess = visits_[parent].ssePx / frame_->tauPx;
+    }
+    visits_.push_back(visit);
+    queue_.push_back(static_cast<uint32_t>(visits_.size() - 1));
+    std::push_heap(queue_.begin(), queue_.end(),
+                   [this](uint32_t a, uint32_t b) { return isLater(a, b); });
+}
+
+uint32_t CoherentStrategy::pop() {
+    std::pop_heap(queue_.begin(), queue_.end(),
+                  [this](uint32_t a, uint32_t b) { return isLater(a, b); });
+    const uint32_t index = queue_.back();
+    queue_.pop_back();
+    return index;
+}
+
+bool CoherentStrategy::isFine(const Visit& visit, double bias) const {
+    if (visit.node.isLeaf()) return true;
+    const double weight = rules_.doesWeighError ? bias : 1.0;
+    return frame_->tauPx > 0.0 && weight * visit.ssePx <= frame_->tauPx;
+}
+
+double CoherentStrategy::priorityOf(const Visit& visit) const {
+    return requestPriority(static_cast<double>(visit.visiblePx), visit.excess);
+}
+
+void CoherentStrategy::visit(uint32_t index) {
+    Visit& visit = visits_[index];
+    ++frame_->record.visitedNodes;
+    if (!frame_->view.intersectsFrustum(*visit.node.boxModel)) {
+        ++frame_->record.culledNodes;
+        return;
+    }
+    visit.ssePx = frame_->view.ssePx(visit.node.record->errorModelUnits, *visit.node.boxModel);
+    Memory& memory = memory_[visit.node];
+    visit.prediction = predict(visit, memory);
+    memory.isVisible = false;
+    memory.isStop = visit.prediction != Prediction::Refine;
+    memory.visitedFrame = frameNumber_;
+    if (counting_ == nullptr || crossesNear(frame_->view, *visit.node.boxModel)) {
+        seeUnasked(index);
+        return;
+    }
+    PredictionCounts& counts = frame_->record.predictions;
+    if (visit.prediction == Prediction::Refine) {
+        ++counts.refine;
+        emit(index);
+        return;
+    }
+    ++(visit.prediction == Prediction::Stop ? counts.stop : counts.delay);
+    ask(index);
+}
+
+void CoherentStrategy::ask(uint32_t index) {
+    visits_[index].ticket = counting_->query(*visits_[index].node.boxModel);
+    if (rules_.doesWaitAtOnce) {
+        ++frame_->record.waits;
+        answer(index, counting_->wait(visits_[index].ticket));
+        return;
+    }
+    pending_.push_back(index);
+    if (visits_[index].prediction == Prediction::Stop) emit(index);
+}
+
+CoherentStrategy::Prediction CoherentStrategy::predict(const Visit& visit, const Memory& memory) {
+    if (rules_.predict == CoherentRules::Predict::Never) return Prediction::Delay;
+    // New, back in the frustum, or hidden.
+    if (memory.visitedFrame + 1 != frameNumber_ || !memory.isVisible) return Prediction::Delay;
+    if (rules_.predict == CoherentRules::Predict::InOrder) {
+        return isFine(visit, lastBias_) ? Prediction::Stop : Prediction::Refine;
+    }
+    if (memory.isStop || !rules_.doesWeighError) {
+        return isFine(visit, memory.bias) ? Prediction::Stop : Prediction::Refine;
+    }
+    return mayRise(visit) ? Prediction::Delay : Prediction::Refine;
+}
+
+// Would the node do in place of its children, by what they answered? A hidden child weighs nothing;
+// one that was out of the frustum does not count.
+bool CoherentStrategy::mayRise(const Visit& visit) {
+    const NodeRange children = frame_->tree.children(visit.node);
+    double biasSum = 0.0;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < children.size(); ++i) {
+        const Node child = children[i];
+        const Memory& memory = memory_[child];
+        if (memory.visitedFrame + 1 != frameNumber_) continue;
+        ++count;
+        if (!memory.isVisible) continue;
+        const double ssePx = frame_->view.ssePx(child.record->errorModelUnits, *child.boxModel);
+        const bool isChildFine = memory.bias * ssePx <= frame_->tauPx;
+        if (!memory.isStop || !(child.isLeaf() || isChildFine)) return false;
+        biasSum += memory.bias;
+    }
+    return count > 0 && isFine(visit, biasSum / count);
+}
+
+// A box that reaches the eye's side of the near plane is visible, whatever a query would say.
+void CoherentStrategy::seeUnasked(uint32_t index) {
+    Visit& visit = visits_[index];
+    Memory& memory = memory_[visit.node];
+    visit.visiblePx = static_cast<uint64_t>(frame_->view.camera().widthPx) *
+                      static_cast<uint64_t>(frame_->view.camera().heightPx);
+    memory.bias = 1.0;
+    memory.isStop = isFine(visit, 1.0);
+    markVisible(index);
+    emit(index);
+}
+
+void CoherentStrategy::answer(uint32_t index, uint64_t visiblePx) {
+    Visit& visit = visits_[index];
+    Memory& memory = memory_[visit.node];
+    PredictionCounts& counts = frame_->record.predictions;
+    const bool wasStop = visit.prediction == Prediction::Stop;
+    visit.visiblePx = visiblePx;
+    if (visiblePx == 0) {
+        ++(wasStop ? counts.stopHidden : counts.delayHidden);
+        if (!wasStop && !visit.isProbe) frame_->sink.hide(visit.node);
+        return;
+    }
+    markVisible(index);
+    const double outlinePx = boxPixels(frame_->view, *visit.node.boxModel);
+    const double share =
+        outlinePx > 1.0 ? std::min(static_cast<double>(visiblePx) / outlinePx, 1.0) : 1.0;
+    memory.bias = lastBias_ = sigmoidBias(share, rules_.biasS, rules_.biasT);
+    memory.isStop = isFine(visit, memory.bias);
+    if (!wasStop) {
+        ++counts.delayVisible;
+        if (memory.isStop && !visit.isProbe) ++frame_->record.delayedNodes;
+    } else if (!memory.isStop && visit.isDrawn) {
+        ++frame_->record.rarnNodes;
+    }
+    emit(index);
+}
+
+void CoherentStrategy::markVisible(uint32_t index) {
+    for (; index != kNoParent; index = visits_[index].parent) {
+        Memory& memory = memory_[visits_[index].node];
+        if (memory.isVisible) return;
+        memory.isVisible = true;
+    }
+}
+
+void CoherentStrategy::emit(uint32_t index) {
+    if (memory_[visits_[index].node].isStop) {
+        draw(index);
+    } else {
+        refine(index);
+    }
+}
+
+void CoherentStrategy::draw(uint32_t index) {
+    Visit& visit = visits_[index];
+    if (visit.isDrawn) return;
+    const cache::PageState state = frame_->sink.want(visit.node, priorityOf(visit), Use::Cut);
+    if (visit.isProbe) return;
+    if (state != cache::PageState::Resident) return standInFor(index);
+    visit.isDrawn = true;
+    frame_->sink.draw(visit.node, Use::Cut);
+}
+
+void CoherentStrategy::refine(uint32_t index) {
+    Memory& memory = memory_[visits_[index].node];
+    const NodeRange children =
+        frame_->tree.children(visits_[index].node, priorityOf(visits_[index]));
+    const bool canBe = canRefine(memory, children);
+    if (canBe && !visits_[index].isProbe) {
+        memory.refinedFrame = frameNumber_;
+        frame_->sink.refine(visits_[index].node);
+        frame_->sink.keep(visits_[index].node);
+    } else if (visits_[index].isProbe) {
+        frame_->sink.want(visits_[index].node, priorityOf(visits_[index]), Use::StandIn);
+    } else if (!drawStandIn(index)) {
+        standInFor(index);
+    }
+    const bool isProbe = visits_[index].isProbe || !canBe;
+    for (uint32_t i = 0; i < children.size(); ++i) push(children[i], index, isProbe);
+}
+
+// A node may be left for its children when all that are not known to be hidden are there, or when
+// it was left for them in the last frame: then nothing gets coarser, and a missing one has a
+// stand-in beside the others.
+bool CoherentStrategy::canRefine(const Memory& memory, const NodeRange& children) {
+    if (children.empty()) return false;
+    const bool wasRefined = memory.refinedFrame + 1 == frameNumber_;
+    bool isWhole = true;
+    for (uint32_t i = 0; i < children.size(); ++i) {
+        const Node child = children[i];
+        const cache::PageState state = frame_->sink.state(child);
+        if (state == cache::PageState::Resident) continue;
+        const Memory& known = memory_[child];
+        const bool isHidden = known.visitedFrame + 1 == frameNumber_ && !known.isVisible;
+        if (isHidden || !frame_->view.intersectsFrustum(*child.boxModel)) continue;
+        if (state == cache::PageState::Failed) return false;
+        isWhole = false;
+    }
+    return isWhole || wasRefined;
+}
+
+// The nearest resident ancestor covers a node that is seen and not there.
+void CoherentStrategy::standInFor(uint32_t index) {
+    for (index = visits_[index].parent; index != kNoParent; index = visits_[index].parent) {
+        if (visits_[index].isDrawn || drawStandIn(index)) return;
+    }
+}
+
+bool CoherentStrategy::drawStandIn(uint32_t index) {
+    Visit& visit = visits_[index];
+    if (visit.isDrawn) return true;
+    if (frame_->sink.want(visit.node, priorityOf(visit), Use::StandIn) !=
+        cache::PageState::Resident) {
+        return false;
+    }
+    visit.isDrawn = true;
+    frame_->sink.draw(visit.node, Use::StandIn);
+    return true;
+}
+
+std::unique_ptr<Strategy> makeBoolStrategy(const StrategyOptions& options) {
+    return std::make_unique<CoherentStrategy>(CoherentRules{CoherentRules::Predict::Coherent, false,
+                                                            false, options.biasS, options.biasT});
+}
+
+std::unique_ptr<Strategy> makeSwStrategy(const StrategyOptions& options) {
+    return std::make_unique<CoherentStrategy>(
+        CoherentRules{CoherentRules::Predict::Never, true, true, options.biasS, options.biasT});
+}
+
+std::unique_ptr<Strategy> makeSimpStrategy(const StrategyOptions& options) {
+    return std::make_unique<CoherentStrategy>(
+        CoherentRules{CoherentRules::Predict::InOrder, true, false, options.biasS, options.biasT});
+}
+
+std::unique_ptr<Strategy> makeCohStrategy(const StrategyOptions& options) {
+    return std::make_unique<CoherentStrategy>(
+        CoherentRules{CoherentRules::Predict::Coherent, true, false, options.biasS, options.biasT});
+}
+
+}  // namespace pagoda::hlod

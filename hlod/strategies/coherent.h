@@ -1,0 +1,91 @@
+// coherent.h: the traversal that the strategies of paper 004 share. They differ in how a node's
+// state is predicted, in whether answers weigh the error (VMSSE) or only say yes or no, and in
+// whether an answer is waited for at once; in nothing else.
+//
+// Nodes are taken from a queue, nearest box first. A prediction says refine (no query, children
+// next), stop (query its box and draw it at once) or delay (query; drawing waits for the answer).
+// Answers are taken in order while the walk goes on, and waited for when nothing else is left. A
+// wrong stop whose answer says "refine" has its children drawn over it (RARN).
+#pragma once
+
+#include "hlod/strategies/node_memory.h"
+#include "hlod/strategies/strategies.h"
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+namespace pagoda::hlod {
+
+struct CoherentRules {
+    enum class Predict {
+        Coherent,  // from the node's own last answer, or its children's (paper 004)
+        InOrder,   // from the last answer of any node (the older scheme, `simp`)
+        Never,     // always delay
+    };
+    Predict predict = Predict::Coherent;
+    bool doesWeighError = true;  // VMSSE; else SSE alone
+    bool doesWaitAtOnce = false;
+    double biasS = 0.5, biasT = 0.5;
+};
+
+class CoherentStrategy final : public Strategy {
+public:
+    explicit CoherentStrategy(const CoherentRules& rules) : rules_(rules) {}
+    void traverse(FrameContext& frame) override;
+    void forget() override { memory_.clear(); }
+
+private:
+    enum class Prediction : uint8_t { Refine, Stop, Delay };
+    struct Memory {
+        uint64_t visitedFrame = 0;  // of this strategy
+        uint64_t refinedFrame = 0;
+        double bias = 1.0;
+        bool isVisible = false;
+        bool isStop = false;
+    };
+    // A node in this frame.
+    struct Visit {
+        Node node;
+        uint32_t parent = 0;
+        float distance = 0;
+        double ssePx = 0;
+        double excess = 1;  // of the parent's error: how badly it is missed
+        uint64_t visiblePx = 0;
+        QueryTicket ticket;
+        Prediction prediction = Prediction::Delay;
+        bool isProbe = false;  // a stand-in is drawn above: tested and asked for, never drawn
+        bool isDrawn = false;
+    };
+
+    void push(const Node& node, uint32_t parent, bool isProbe);
+    [[nodiscard]] uint32_t pop();
+    void visit(uint32_t index);
+    [[nodiscard]] Prediction predict(const Visit& visit, const Memory& memory);
+    [[nodiscard]] bool mayRise(const Visit& visit);
+    void ask(uint32_t index);
+    void answer(uint32_t index, uint64_t visiblePx);
+    void seeUnasked(uint32_t index);
+    void markVisible(uint32_t index);
+    void emit(uint32_t index);
+    void draw(uint32_t index);
+    void refine(uint32_t index);
+    [[nodiscard]] bool canRefine(const Memory& memory, const NodeRange& children);
+    void standInFor(uint32_t index);
+    [[nodiscard]] bool drawStandIn(uint32_t index);
+    [[nodiscard]] bool isFine(const Visit& visit, double bias) const;
+    [[nodiscard]] double priorityOf(const Visit& visit) const;
+    [[nodiscard]] bool isLater(uint32_t a, uint32_t b) const;
+
+    CoherentRules rules_;
+    NodeMemory<Memory> memory_;
+    uint64_t frameNumber_ = 1;  // memories of frame 0 are of no frame
+    double lastBias_ = 1.0;     // of the last answer in order
+    FrameContext* frame_ = nullptr;
+    CountingVisibility* counting_ = nullptr;
+    std::vector<Visit> visits_;
+    std::vector<uint32_t> queue_;   // a heap of visits, nearest first
+    std::deque<uint32_t> pending_;  // visits that were asked about, oldest first
+};
+
+}  // namespace pagoda::hlod

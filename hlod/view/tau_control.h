@@ -1,0 +1,36 @@
+// tau_control.h: raises the allowed error while the cut does not fit into GPU memory, shows it, and
+// comes back: smoothly, without thrash and without livelock. Pure state: one call a frame.
+#pragma once
+
+#include <cstdint>
+
+namespace pagoda::hlod {
+
+class TauControl {
+public:
+    struct Frame {
+        double tauPx = 1.0;        // asked for
+        uint64_t demandBytes = 0;  // of the whole cut at effectiveTauPx()
+        uint64_t budgetBytes = 0;
+        bool isStuck = false;     // something is missing and nothing can come: gaps, pins
+        bool isSameView = false;  // as in the frame before
+    };
+
+    // Of the next frame, once update() has been called; never below what is asked for.
+    [[nodiscard]] double effectiveTauPx(double tauPx) const noexcept;
+    void update(const Frame& frame);
+    // Did the last update() change it, or find that the cut does not fit?
+    [[nodiscard]] bool isMoving() const noexcept { return isMoving_; }
+    // Did the last frame's cut fit? If not, reading for it would be in vain.
+    [[nodiscard]] bool fits() const noexcept { return fits_; }
+
+private:
+    void raise(const Frame& frame);
+    void lower(const Frame& frame);
+
+    double raised_ = 0.0;   // 0: nothing has been raised
+    double tooFine_ = 0.0;  // the greatest tau that is known not to fit from here
+    bool isMoving_ = false, fits_ = true;
+};
+
+}  // namespace pagoda::hlod

@@ -1,0 +1,65 @@
+#include "tools/runtime_options.h"
+
+#include "tools/session.h"
+
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+
+namespace pagoda::tools {
+
+hlod::StrategyOptions RuntimeOptions::strategyOptions() const {
+    hlod::StrategyOptions options;
+    if (bias.empty()) return options;
+    if (bias == "paper") return {.biasS = 1.0, .biasT = 0.5};
+    char rest = 0;
+    if (std::sscanf(bias.c_str(), "%lf,%lf%c", &options.biasS, &options.biasT, &rest) != 2 ||
+        !(options.biasS >= 0 && options.biasS <= 1) ||
+        !(options.biasT >= 0 && options.biasT <= 1)) {
+        throw CLI::ValidationError(
+            "--bias", "'" + bias + "' is no bias; write paper, or S,T in [0, 1] such as 0.5,0.5");
+    }
+    return options;
+}
+
+viewer::RendererOptions RuntimeOptions::rendererOptions() const {
+    viewer::RendererOptions options;
+    options.hostBytes = parseBytes(hostBudget);
+    options.gpuBytes = parseBytes(gpuBudget);
+    options.uploadBytesPerFrame = uploadBudget.empty() ? 0 : parseBytes(uploadBudget);
+    options.queryLatencyFrames = queryLatencyFrames;
+    options.disk = cache::parseDiskProfile(disk);
+    return options;
+}
+
+std::vector<std::string> strategyNames() {
+    std::vector<std::string> names;
+    for (const hlod::StrategyRow& row : hlod::strategies()) names.emplace_back(row.name);
+    return names;
+}
+
+void addRuntimeOptions(CLI::App& command, RuntimeOptions& options) {
+    command.add_option("--bias", options.bias,
+                       "How much hidden parts lower the error of a node: S,T in [0, 1], or paper "
+                       "(1,0.5) (default: 0.5,0.5)");
+    command
+        .add_option("--query-latency", options.queryLatencyFrames,
+                    "Frames that answers of occlusion queries are late, simulated")
+        ->check(CLI::Range(0u, 64u))
+        ->capture_default_str();
+    command
+        .add_option("--host-budget", options.hostBudget,
+                    "Bytes for the index and pages in host memory")
+        ->capture_default_str();
+    command
+        .add_option("--gpu-budget", options.gpuBudget, "Bytes for uploaded pages (1MiB or more)")
+        ->capture_default_str();
+    command.add_option("--upload-budget", options.uploadBudget,
+                       "Bytes uploaded a frame at most (default: no bound)");
+    command
+        .add_option("--disk", options.disk,
+                    "Simulated disk: as-is, or parts such as 100MB/s,10ms,fail=1%,short=5%")
+        ->capture_default_str();
+}
+
+}  // namespace pagoda::tools

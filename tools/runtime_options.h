@@ -1,0 +1,35 @@
+// runtime_options.h: the options of the run time, the same wherever a frame is drawn.
+#pragma once
+
+#include "cache/disk_loads.h"
+#include "hlod/strategies/strategies.h"
+#include "viewer/renderer.h"
+
+#include <array>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace pagoda::tools {
+
+struct RuntimeOptions {
+    std::string strategy = "frustum";
+    double tauPx = 1;
+    std::string bias;  // "S,T" or a preset; empty: the default
+    uint32_t queryLatencyFrames = 0;
+    std::string hostBudget = "256MiB", gpuBudget = "1GiB", uploadBudget;
+    std::string disk = "as-is";
+
+    // All throw CLI::ValidationError or Error for what cannot be parsed.
+    [[nodiscard]] hlod::StrategyOptions strategyOptions() const;
+    [[nodiscard]] viewer::RendererOptions rendererOptions() const;
+};
+
+// Names of the strategies, for --help and checks.
+[[nodiscard]] std::vector<std::string> strategyNames();
+// All but --strategy and --tau, which some commands take as lists.
+void addRuntimeOptions(CLI::App& command, RuntimeOptions& options);
+
+}  // namespace pagoda::tools

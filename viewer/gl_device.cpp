@@ -1,0 +1,143 @@
+#include "viewer/gl_device.h"
+
+#include "viewer/gl_context.h"
+#include "viewer/stopwatch.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+
+namespace pagoda::viewer {
+
+std::vector<hlod::Node> translucentBackToFront(std::span<const hlod::Node> nodes,
+                                               const Vec3d& eyeModel) {
+    struct Key {
+        double eyeDistance;
+        hlod::Node node;
+    };
+    std::vector<Key> keys;
+    for (const hlod::Node& node : nodes) {
+        if ((node.record->flags & ooc::kNodeHasTranslucent) == 0) continue;
+        const Box3d& box = *node.boxModel;
+        keys.push_back({glm::distance(0.5 * (box.min + box.max), eyeModel), node});
+    }
+    std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
+        return a.eyeDistance != b.eyeDistance ? a.eyeDistance > b.eyeDistance
+                                              : a.node.page() < b.node.page();
+    });
+    std::vector<hlod::Node> order;
+    for (const Key& key : keys) order.push_back(key.node);
+    return order;
+}
+
+GlDevice::GlDevice(const ooc::Lattice& lattice, uint64_t gpuBudgetBytes)
+    : lattice_(lattice),
+      store_(gpuBudgetBytes),
+      drawer_(store_),
+      queries_([this] { flush(); }, [this] { restoreState(); }, !isSoftwareRenderer()) {
+}
+
+void GlDevice::setLook(const Background& background, const Vec3f& worldUp) {
+    background_ = background;
+    worldUp_ = worldUp;
+}
+
+void GlDevice::beginFrame(const hlod::View& view) {
+    const hlod::Camera& camera = view.camera();
+    if (!target_ || target_->widthPx() != camera.widthPx ||
+        target_->heightPx() != camera.heightPx) {
+        target_.reset();
+        target_ = std::make_unique<FrameTarget>(camera.widthPx, camera.heightPx);
+    }
+    eyeModel_ = view.eye();
+    nearModelUnits_ = view.nearModelUnits();
+    ordinals_.clear();
+    gathered_.clear();
+    drawnNodes_ = drawnTriangles_ = 0;
+    drawMs_ = 0.0;
+    Stopwatch watch;
+    target_->begin(background_);
+    latticeView_ = makeLatticeView(view, lattice_);
+    program_.setView(latticeView_, worldUp_);
+    queries_.beginFrame(view, latticeView_, lattice_);
+    target_->beginOpaque();
+    drawer_.bind(program_, latticeView_);
+    drawMs_ += watch.lapMs();
+}
+
+uint32_t GlDevice::ordinalOf(const hlod::Node& node) {
+    ordinals_.push_back(node.record->id);
+    return static_cast<uint32_t>(ordinals_.size());
+}
+
+void GlDevice::draw(const hlod::Node& node) {
+    gathered_.push_back({node.page(), ordinalOf(node)});
+}
+
+void GlDevice::flush() {
+    if (gathered_.empty()) return;
+    Stopwatch watch;
+    // Ties at equal depth fall to the first drawn: the least page id of a batch.
+    std::sort(gathered_.begin(), gathered_.end(),
+              [](const DrawItem& a, const DrawItem& b) { return a.page < b.page; });
+    drawnNodes_ += gathered_.size();
+    drawnTriangles_ += drawer_.drawOpaque(gathered_);
+    gathered_.clear();
+    drawMs_ += watch.lapMs();
+}
+
+void GlDevice::restoreState() {
+    target_->beginOpaque();
+    drawer_.rebind(program_);
+}
+
+void GlDevice::finishOpaque(hlod::FrameRecord& record) {
+    flush();
+    // Ranges of the drawn pages are about to be written again. llvmpipe 22.3 does not order that
+    // behind shaders that still read normals from them, as GL says it should.
+    glFinish();
+    record.drawnNodes += drawnNodes_;
+    record.drawnTriangles += drawnTriangles_;
+    drawnNodes_ = drawnTriangles_ = 0;
+}
+
+void GlDevice::drawZippers(const hlod::FrameCut& cut, hlod::FrameRecord& record) {
+    std::vector<hlod::Node> nodes(cut.zipped().begin(), cut.zipped().end());
+    std::sort(nodes.begin(), nodes.end(),
+              [](const hlod::Node& a, const hlod::Node& b) { return a.page() < b.page(); });
+    std::vector<DrawItem> items;
+    for (const hlod::Node& node : nodes) {
+        if (store_.contains(node.page())) items.push_back({node.page(), ordinalOf(node)});
+    }
+    const auto isRefined = [&](cache::PageId page) { return cut.refined(page); };
+    record.drawnTriangles += drawer_.drawZippers(items, isRefined, record.drawnZippers);
+}
+
+void GlDevice::drawTranslucent(std::span<const hlod::Node> order, hlod::FrameRecord& record) {
+    std::vector<DrawItem> items;
+    for (const hlod::Node& node : order) items.push_back({node.page(), 0});
+    target_->beginTranslucent();
+    drawer_.rebind(program_);
+    const uint64_t triangles = drawer_.drawTranslucent(items);
+    record.translucentTriangles += triangles;
+    record.drawnTriangles += triangles;
+}
+
+void GlDevice::endFrame(const hlod::FrameCut& cut, hlod::FrameRecord& record) {
+    record.drawMs = drawMs_;  // what was drawn while the strategy went on; its caller adds the rest
+    finishOpaque(record);
+    drawZippers(cut, record);
+    drawTranslucent(translucentBackToFront(cut.drawn(), eyeModel_), record);
+    glFinish();
+    throwOnGlError("drawing a frame");
+    record.queries = queries_.queriesThisFrame();
+    record.queryMs = queries_.msThisFrame();
+}
+
+Picture GlDevice::read() const {
+    Picture picture = target_->read(nearModelUnits_);
+    picture.nodes = ordinals_;
+    return picture;
+}
+
+}  // namespace pagoda::viewer

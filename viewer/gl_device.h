@@ -1,0 +1,69 @@
+// gl_device.h: draws frames by OpenGL 4.5: nodes gathered into multi-draws between queries, box
+// queries, then zippers and translucent parts. Implements what hlod/view/ asks of a device. How a
+// frame flows: docs/frame.md. Render thread only, context current.
+#pragma once
+
+#include "hlod/view/device.h"
+#include "viewer/box_queries.h"
+#include "viewer/frame_target.h"
+#include "viewer/mesh_store.h"
+#include "viewer/node_drawer.h"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace pagoda::viewer {
+
+class GlDevice final : public hlod::Device {
+public:
+    // `lattice` is the scene's.
+    GlDevice(const ooc::Lattice& lattice, uint64_t gpuBudgetBytes);
+
+    [[nodiscard]] MeshStore& store() noexcept { return store_; }
+    // Holds from the next frame on.
+    void setLook(const Background& background, const Vec3f& worldUp);
+
+    void beginFrame(const hlod::View& view) override;
+    void draw(const hlod::Node& node) override;
+    [[nodiscard]] hlod::CountingVisibility* counting() override { return &queries_; }
+    [[nodiscard]] hlod::PyramidVisibility* pyramid() override { return nullptr; }
+    void endFrame(const hlod::FrameCut& cut, hlod::FrameRecord& record) override;
+
+    // For who draws a picture in several batches: draws what was gathered, waits for it, and
+    // forgets the pages. Zippers do not take part.
+    void finishOpaque(hlod::FrameRecord& record);
+    // Translucent parts of nodes whose pages are uploaded, `order` from back to front.
+    void drawTranslucent(std::span<const hlod::Node> order, hlod::FrameRecord& record);
+
+    // The last frame's picture.
+    [[nodiscard]] Picture read() const;
+
+private:
+    void flush();
+    void restoreState();
+    [[nodiscard]] uint32_t ordinalOf(const hlod::Node& node);
+    void drawZippers(const hlod::FrameCut& cut, hlod::FrameRecord& record);
+
+    ooc::Lattice lattice_;
+    MeshStore store_;
+    NodeProgram program_;
+    NodeDrawer drawer_;
+    BoxQueries queries_;
+    std::unique_ptr<FrameTarget> target_;
+    Background background_;
+    Vec3f worldUp_{0, 1, 0};
+    LatticeView latticeView_;
+    Vec3d eyeModel_{0.0};
+    double nearModelUnits_ = 1.0;
+    std::vector<ooc::NodeId> ordinals_;  // node of ordinal i + 1
+    std::vector<DrawItem> gathered_;
+    uint64_t drawnNodes_ = 0, drawnTriangles_ = 0;
+    double drawMs_ = 0.0;
+};
+
+// Nodes with translucent parts among `nodes`, from back to front by their centres.
+[[nodiscard]] std::vector<hlod::Node> translucentBackToFront(std::span<const hlod::Node> nodes,
+                                                             const Vec3d& eyeModel);
+
+}  // namespace pagoda::viewer
