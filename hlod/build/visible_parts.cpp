@@ -120,9 +120,7 @@ std::vector<uint32_t> countVisiblePixels(std::span<const SoupTriangle> triangles
     }
     // One of each pair of opposite directions: a view has two ends.
     for (int code = 14; code < 27; ++code) {
-        const Vec3f direction(static_cast<float>(code % 3 - 1),
-                              static_cast<float>(code / 3 % 3 - 1),
-                              static_cast<float>(code / 9 - 1));
+        const Vec3f direction(Vec3i(code % 3, code / 3 % 3, code / 9) - 1);
         ParallelView view(direction, halfExtent, resolution);
         for (uint32_t i = 0; i < local.size(); ++i) view.draw(i, local[i]);
         view.count(pixels);

@@ -344,8 +344,9 @@ SceneViews interiorViews(const Layout& layout) {
                  middle = kRoomY + kCorridor / 2;
     for (uint64_t i = 0; i < 16; ++i) {
         const double z = static_cast<double>(i % layout.storeys) * kStorey + 1.65;
-        const double room = static_cast<double>(i * layout.columns / 16);
-        const double door = doorAt(i % 4 == 3 ? 1 : 0, kRoomX * room) + kDoor / 2;
+        const uint64_t room = i * layout.columns / 16;
+        const double door =
+            doorAt(i % 4 == 3 ? 1 : 0, kRoomX * static_cast<double>(room)) + kDoor / 2;
         switch (i % 4) {
             case 0:
                 views.walk.push_back({{1.0, middle, z}, {length, middle, z - 0.3}});
@@ -369,39 +370,6 @@ SceneViews interiorViews(const Layout& layout) {
 }
 
 }  // namespace
-
-InteriorPalette::InteriorPalette(SceneKit& kit)
-    : plaster(kit.addMaterial("plaster", 0xE4DFD3)),
-      facade(kit.addMaterial("facade", 0xCDB79B)),
-      ceiling(kit.addMaterial("ceiling", 0xF0EEE8)),
-      stone(kit.addMaterial("stone", 0xB9B4AA)),
-      oak(kit.addMaterial("oak", 0xC49A63)),
-      walnut(kit.addMaterial("walnut", 0x7A5437)),
-      birch(kit.addMaterial("birch", 0xDCC39B)),
-      white(kit.addMaterial("white lacquer", 0xF1EFEA)),
-      black(kit.addMaterial("black", 0x35363A)),
-      steel(kit.addMaterial("steel", 0x8E9499)),
-      chrome(kit.addMaterial("chrome", 0xC5CACE)),
-      glass(kit.addMaterial("glass", 0xBFD9E0, 0.3)),
-      screen(kit.addMaterial("screen", 0x2C4A66)),
-      leaf(kit.addMaterial("leaf", 0x4F7F3F)),
-      clay(kit.addMaterial("clay", 0xB3694A)),
-      lamp(kit.addMaterial("lamp", 0xFFF3D0)),
-      brass(kit.addMaterial("brass", 0xB8954A)),
-      paper(kit.addMaterial("paper", 0xF4EFE0)),
-      roof(kit.addMaterial("roof", 0x6B6660)),
-      fabrics{kit.addMaterial("fabric blue", 0x4A6A8A), kit.addMaterial("fabric grey", 0x8A8782),
-              kit.addMaterial("fabric rust", 0xB0603F), kit.addMaterial("fabric green", 0x6F8A63),
-              kit.addMaterial("fabric sand", 0xCDBB99)},
-      books{kit.addMaterial("book red", 0x9A3B34),   kit.addMaterial("book blue", 0x35557F),
-            kit.addMaterial("book green", 0x4A6B4B), kit.addMaterial("book ochre", 0xC29A45),
-            kit.addMaterial("book white", 0xE3DCCB), kit.addMaterial("book black", 0x3A3836),
-            kit.addMaterial("book brown", 0x7C5A40), kit.addMaterial("book violet", 0x6B5478)},
-      carpets{kit.addMaterial("carpet grey", 0x8D8F93), kit.addMaterial("carpet blue", 0x63788C),
-              kit.addMaterial("carpet sand", 0xB8A98A), kit.addMaterial("carpet green", 0x76846F)},
-      paints{kit.addMaterial("paint red", 0xC2453A), kit.addMaterial("paint yellow", 0xE0B84A),
-             kit.addMaterial("paint teal", 0x3F8A8C), kit.addMaterial("paint navy", 0x2F3F66)} {
-}
 
 SceneViews generateInterior(ooc::TriangleSink& sink, const GenerateOptions& options) {
     const Layout layout = layoutFor(options.triangles);

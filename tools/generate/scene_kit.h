@@ -11,6 +11,7 @@
 #include "ooc/readers/reader.h"
 #include "tools/generate/random.h"
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -130,8 +131,8 @@ private:
 template <typename Height>
 void SceneKit::sheet(const Frame& at, double u, double v, int steps, Height&& height) {
     const double spacing = glm::max(u, v) / glm::max(2.0, steps * glm::sqrt(detail_));
-    const int nu = glm::max(1, static_cast<int>(u / spacing + 0.5));
-    const int nv = glm::max(1, static_cast<int>(v / spacing + 0.5));
+    const int nu = glm::max(1, static_cast<int>(std::lround(u / spacing)));
+    const int nv = glm::max(1, static_cast<int>(std::lround(v / spacing)));
     if (sink_ == nullptr) {
         triangles_ += 2 * static_cast<uint64_t>(nu) * static_cast<uint64_t>(nv);
         return;
