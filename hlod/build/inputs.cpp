@@ -87,7 +87,8 @@ void applyOption(InputSpec& spec, const std::string& argument, const std::string
         glm::dmat4 matrix;
         for (int row = 0; row < 4; ++row) {
             for (int column = 0; column < 4; ++column) {
-                matrix[column][row] = rows[static_cast<size_t>(4 * row + column)];
+                matrix[column][row] =
+                    rows[4 * static_cast<size_t>(row) + static_cast<size_t>(column)];
             }
         }
         spec.transform = matrix * spec.transform;
@@ -275,10 +276,11 @@ InputSet::InputSet(std::vector<InputSpec> specs, const ooc::ReaderOptions& optio
                    ooc::UpAxis databaseUp)
     : databaseUp_(databaseUp) {
     for (InputSpec& spec : specs) {
-        Entry entry{.spec = spec, .reader = ooc::openReader(spec.path, options)};
+        std::unique_ptr<ooc::Reader> reader = ooc::openReader(spec.path, options);
+        totalBytes_ += fs::file_size(spec.path);
+        Entry entry{.spec = std::move(spec), .reader = std::move(reader)};
         if (entry.spec.up == ooc::UpAxis::Unknown) entry.spec.up = entry.reader->upAxis();
         if (databaseUp_ == ooc::UpAxis::Unknown) databaseUp_ = entry.spec.up;
-        totalBytes_ += fs::file_size(spec.path);
         entries_.push_back(std::move(entry));
     }
     if (databaseUp_ == ooc::UpAxis::Unknown) databaseUp_ = ooc::UpAxis::Z;

@@ -57,7 +57,7 @@ void summariseNodes(std::span<const ooc::NodeRecord> nodes, BuildReport& report)
     std::vector<std::vector<double>> errors;
     for (const ooc::NodeRecord& node : nodes) {
         // An extra leaf hangs below its cell's node: one level down.
-        const auto level = static_cast<size_t>(node.id.depth() + (node.id.slot() != 0 ? 1 : 0));
+        const auto level = static_cast<size_t>(node.id.depth()) + (node.id.slot() != 0 ? 1 : 0);
         if (report.levels.size() <= level) {
             report.levels.resize(level + 1);
             errors.resize(level + 1);

@@ -121,6 +121,7 @@ void fillMesh(const GeometryView& geometry, std::span<const MeshRun> runs, const
     }
     if (runs.size() > 1) {
         std::vector<uint32_t> run;
+        run.reserve(points.size());
         for (const Point& point : points) run.push_back(point.run);
         addAttribute(mesh, kRun, draco::GeometryAttribute::GENERIC, draco::DT_UINT32, 1, 4,
                      run.data());

@@ -2,6 +2,8 @@
 
 #include "ooc/readers/gltf_document.h"
 
+#include <fmt/format.h>
+
 #include <limits>
 
 namespace pagoda::ooc::gltf {
@@ -85,7 +87,7 @@ void JsonFields::checkField(const Json& value, const Field& field, const Where& 
         case Kind::IndexMap:
             if (!value.is_object()) refuse(where, "is not an object");
             for (const auto& [key, item] : value.items()) {
-                checkIndex(item, field.section, where + "." + key);
+                checkIndex(item, field.section, fmt::format("{}.{}", where, key));
             }
             return;
     }
