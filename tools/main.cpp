@@ -58,6 +58,7 @@ void addCommands(CLI::App& app, Session& session) {
     addRenderCommand(app, session);
 #endif
     addGenerateCommand(app, session);
+    addPathCommand(app, session);
 }
 
 int wrongUsage(const CLI::App& app, const CLI::ParseError& error) {

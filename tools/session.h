@@ -31,6 +31,7 @@ void addVerifyCommand(CLI::App& app, Session& session);
 void addExtractCommand(CLI::App& app, Session& session);
 void addRenderCommand(CLI::App& app, Session& session);  // with PAGODA_HAS_VIEWER only
 void addGenerateCommand(CLI::App& app, Session& session);
+void addPathCommand(CLI::App& app, Session& session);
 
 // "512MiB", "4GB", "1048576" -> bytes. Throws CLI::ValidationError on anything else.
 [[nodiscard]] uint64_t parseBytes(const std::string& text);
