@@ -38,7 +38,7 @@ std::vector<double> headings(const std::vector<Vec3d>& eyes, double spacing, dou
 double openness(const Occupancy& solid, const Vec3d& eye, double azimuth, double reach) {
     double sum = 0;
     for (const double off : {-18 * kDegree, 0.0, 18 * kDegree}) {
-        sum += solid.freeLength(eye, directionOf(azimuth + off, 0.0), reach);
+        sum += solid.viewLength(eye, directionOf(azimuth + off, 0.0), reach);
     }
     return sum / (3 * reach);
 }

@@ -163,6 +163,11 @@ double Occupancy::freeLength(const Vec3d& from, const Vec3d& direction, double m
     return std::max(length, 0.0);
 }
 
+double Occupancy::viewLength(const Vec3d& from, const Vec3d& direction, double maxLength) const {
+    const double length = freeLength(from, direction, 5 * maxLength);
+    return length < 5 * maxLength ? std::min(length, maxLength) : 0.3 * maxLength;
+}
+
 bool Occupancy::isClear(const Vec3d& from, const Vec3d& to, int marginCells) const {
     const double length = glm::length(to - from);
     if (isSolidAround(cellAt(from), marginCells) || isSolidAround(cellAt(to), marginCells)) {

@@ -33,6 +33,11 @@ public:
     [[nodiscard]] double freeLength(const Vec3d& from, const Vec3d& direction,
                                     double maxLength) const;
 
+    // The same as a view: a direction in which nothing comes for 5 times that is sky, and counts
+    // 0.3 of it.
+    [[nodiscard]] double viewLength(const Vec3d& from, const Vec3d& direction,
+                                    double maxLength) const;
+
     [[nodiscard]] double cellSize() const noexcept { return cell_; }
     [[nodiscard]] const Vec3i& size() const noexcept { return size_; }  // cells along each axis
     [[nodiscard]] Vec3i cellAt(const Vec3d& point) const;

@@ -21,7 +21,7 @@ Vec3d openDirection(const Occupancy& solid, const Vec3d& eye, double reach, Rand
     const double start = random.range(0.0, 6.28);
     for (int i = 0; i < 16; ++i) {
         const Vec3d direction = directionOf(start + i * 0.3927, 0.0);
-        const double open = solid.freeLength(eye, direction, reach) / reach;
+        const double open = solid.viewLength(eye, direction, reach) / reach;
         const double score = open + 0.2 * random.unit();
         if (score <= bestScore) continue;
         bestScore = score;

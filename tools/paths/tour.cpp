@@ -93,7 +93,7 @@ double Tour::openness(uint32_t spot) const {
     const double reach = 5 * style_.eyeHeight * solid_.cellSize();
     double sum = 0;
     for (int i = 0; i < 16; ++i) {
-        sum += solid_.freeLength(eye, directionOf(i * 0.3927, 0.0), reach);
+        sum += solid_.viewLength(eye, directionOf(i * 0.3927, 0.0), reach);
     }
     return sum / (16 * solid_.cellSize());
 }
