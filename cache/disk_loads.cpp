@@ -39,6 +39,9 @@ void parsePart(std::string_view part, DiskProfile& profile) {
     if (part.starts_with("short=")) return parseShare(part, profile.shortShare);
     std::string_view unit;
     const double value = numberOf(part, unit);
+    if (value <= 0 && (unit == "MB/s" || unit == "Mbit/s")) {
+        throw Error("--disk", "", fmt::format("'{}': nothing would ever arrive", part), kRemedy);
+    }
     if (unit == "MB/s") {
         profile.bytesPerS = value * 1e6;
     } else if (unit == "Mbit/s") {
@@ -99,37 +102,36 @@ void DiskLoads::send(std::vector<LoadItem> items) {
     reads_.insert(later, std::move(read));
 }
 
-// False when some of it has not been decoded, and there is no waiting for it: real time goes on.
-bool DiskLoads::takeInner(const Read& read, std::vector<LoadResult>& arrived) {
-    const auto isHere = [&] {
-        scratch_.clear();
-        inner_->collect(scratch_);
-        for (LoadResult& result : scratch_) {
-            const uint64_t ticket = result.ticket;
-            ready_.emplace(ticket, std::move(result));
-        }
-        return std::all_of(read.tickets.begin(), read.tickets.end(),
-                           [&](uint64_t ticket) { return ready_.contains(ticket); });
-    };
-    while (!isHere()) {
-        if (!clock_.isManual() || !inner_->waitForArrival()) return false;
+bool DiskLoads::isHere(const Read& read) {
+    if (read.isFailed) return true;
+    scratch_.clear();
+    inner_->collect(scratch_);
+    for (LoadResult& result : scratch_) {
+        const uint64_t ticket = result.ticket;
+        ready_.emplace(ticket, std::move(result));
     }
+    return std::all_of(read.tickets.begin(), read.tickets.end(),
+                       [&](uint64_t ticket) { return ready_.contains(ticket); });
+}
+
+void DiskLoads::take(const Read& read, std::vector<LoadResult>& arrived) {
     for (const uint64_t ticket : read.tickets) {
-        arrived.push_back(std::move(ready_.extract(ticket).mapped()));
+        if (read.isFailed) {
+            arrived.push_back({ticket, {}, {}, "simulated read failure"});
+        } else {
+            arrived.push_back(std::move(ready_.extract(ticket).mapped()));
+        }
     }
-    return true;
 }
 
 void DiskLoads::collect(std::vector<LoadResult>& arrived) {
     while (!reads_.empty() && reads_.front().doneS <= clock_.nowS()) {
         const Read& read = reads_.front();
-        if (read.isFailed) {
-            for (const uint64_t ticket : read.tickets) {
-                arrived.push_back({ticket, {}, {}, "simulated read failure"});
-            }
-        } else if (!takeInner(read, arrived)) {
-            return;
+        while (!isHere(read)) {
+            // While time stands still, decoding is waited for; real time goes on instead.
+            if (!clock_.isManual() || !inner_->waitForArrival()) return;
         }
+        take(read, arrived);
         reads_.pop_front();
     }
 }
@@ -137,9 +139,9 @@ void DiskLoads::collect(std::vector<LoadResult>& arrived) {
 bool DiskLoads::waitForArrival() {
     if (reads_.empty()) return false;
     clock_.waitUntil(reads_.front().doneS);
-    if (reads_.front().isFailed) return true;
-    // In real time the decoding may not have finished yet.
-    if (!clock_.isManual()) static_cast<void>(inner_->waitForArrival());
+    while (!isHere(reads_.front())) {
+        if (!inner_->waitForArrival()) return false;
+    }
     return true;
 }
 

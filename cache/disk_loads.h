@@ -2,7 +2,9 @@
 // the profile would have given them. Reading and decoding go on meanwhile, so that only the time of
 // arrival is simulated. On a manual clock arrivals depend on the profile and what was sent alone:
 // the same scenario gives the same frames every time.
-// The model: requests overlap (each waits out its latency on its own), transfers share one line.
+// The model: requests overlap (each waits out its latency on its own); transfers share one line and
+// use it in the order they were sent. A failed read answers when its transfer would have begun, and
+// leaves the line to the next one. Results arrive whole reads at a time, in order of time.
 #pragma once
 
 #include "cache/clock.h"
@@ -29,7 +31,7 @@ struct DiskProfile {
 };
 
 // "as-is", or parts joined by commas: "500MB/s", "50Mbit/s", "10ms", "fail=1%", "short=5%".
-// Throws Error ("--disk" as its path) for anything else.
+// Throws Error ("--disk" as its path) for anything else, and for a disk of no bandwidth.
 [[nodiscard]] DiskProfile parseDiskProfile(std::string_view text);
 
 class DiskLoads final : public LoadQueue {
@@ -43,7 +45,7 @@ public:
 
     void send(std::vector<LoadItem> items) override;
     void collect(std::vector<LoadResult>& arrived) override;
-    // Moves the clock to the next arrival.
+    // Moves the clock to the next arrival. False also when the inner queue has lost what is due.
     [[nodiscard]] bool waitForArrival() override;
     [[nodiscard]] size_t readsInFlight() const override { return reads_.size(); }
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
@@ -54,8 +56,9 @@ private:
         bool isFailed = false;
         std::vector<uint64_t> tickets;
     };
-    [[nodiscard]] double chance();  // the next of a fixed sequence in [0, 1)
-    [[nodiscard]] bool takeInner(const Read& read, std::vector<LoadResult>& arrived);
+    [[nodiscard]] double chance();                // the next of a fixed sequence in [0, 1)
+    [[nodiscard]] bool isHere(const Read& read);  // decoded
+    void take(const Read& read, std::vector<LoadResult>& arrived);
 
     std::unique_ptr<LoadQueue> inner_;
     DiskProfile profile_;

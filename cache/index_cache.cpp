@@ -1,5 +1,7 @@
 #include "cache/index_cache.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -7,6 +9,7 @@ namespace pagoda::cache {
 namespace {
 
 constexpr uint64_t kKeptFrames = 2;
+constexpr uint32_t kRootBlock = 0;
 constexpr uint64_t kNodeBytes = sizeof(ooc::NodeRecord) + sizeof(Box3d);
 // A record on disk is never longer than in memory, so that a block's bytes on disk tell a bound.
 constexpr uint64_t kMinRecordBytes = 96;
@@ -41,7 +44,13 @@ const IndexCache::Block* IndexCache::block(uint32_t block, double priority) {
         reportFault(block, "no such block");
         return nullptr;
     }
-    Request request{{database_, true, block}, source_.blockRange(block), priority, false, {}};
+    const ByteRange range = source_.blockRange(block);
+    if (boundBytes(range) > budgetBytes_ && block != kRootBlock) {
+        reportFault(block, fmt::format("takes {} bytes, more than the whole budget of {}",
+                                       boundBytes(range), budgetBytes_));
+        return nullptr;
+    }
+    Request request{{database_, true, block}, range, priority, false, {}};
     if (requests_.ask(request)) ++missingBlocks_;
     return nullptr;
 }
@@ -89,8 +98,7 @@ bool IndexCache::admit(const Request& request) {
     const uint64_t bytes = boundBytes(request.range);
     evictUntil(bytes);
     // The root's block is needed for anything to be drawn at all.
-    if (usedBytes() + bytes > budgetBytes_ && !(blocks_.empty() && reservedBytes_ == 0))
-        return false;
+    if (usedBytes() + bytes > budgetBytes_ && request.key.id != kRootBlock) return false;
     reservedBytes_ += bytes;
     return true;
 }

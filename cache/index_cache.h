@@ -34,8 +34,9 @@ public:
     };
     enum class BlockState { Resident, Absent, Broken };
 
-    // `source` and `requests` outlive it. Blocks used in the last two frames stay even when they
-    // are more than the budget allows to add to: no new ones come then.
+    // `source` and `requests` outlive it. Blocks used in the last two frames stay: when they fill
+    // the budget, no new ones come. The root's block (0) comes whatever the budget; another one
+    // that is longer than the whole budget is a fault.
     IndexCache(const ooc::Lattice& lattice, const PageSource& source, RequestQueue& requests,
                uint64_t budgetBytes, uint32_t database = 0);
 
@@ -46,7 +47,7 @@ public:
     // Lists a fault that the content of a block that was read has shown.
     void reportFault(uint32_t block, std::string what);
 
-    // For RequestQueue::send() and collect(), as in Residency.
+    // For RequestQueue::send() and collect(), as in Residency: between frames.
     [[nodiscard]] bool admit(const Request& request);
     void arrive(RequestQueue::Arrival& arrival);
 

@@ -39,7 +39,8 @@ public:
     virtual void collect(std::vector<LoadResult>& arrived) = 0;
     // Blocks until collect() has something to give. False when nothing is on its way.
     [[nodiscard]] virtual bool waitForArrival() = 0;
-    // Reads that were sent and of which something has not been collected.
+    // Reads that keep the disk busy: sent and not finished. Finished ones that wait for collect()
+    // may count too.
     [[nodiscard]] virtual size_t readsInFlight() const = 0;
 };
 

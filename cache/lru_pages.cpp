@@ -7,21 +7,19 @@ namespace pagoda::cache {
 
 void LruPages::insert(PageId page, uint64_t sizeBytes, uint64_t frameIndex) {
     assert(sizeBytes > 0 && sizeBytes <= budgetBytes_ - usedBytes());
-    const bool isNew = pages_.emplace(page, Entry{sizeBytes, frameIndex, false}).second;
+    const auto [found, isNew] = pages_.emplace(page, Entry{sizeBytes, frameIndex, false});
     assert(isNew);
     static_cast<void>(isNew);
-    evictable_.insert({frameIndex, page});
+    addEvictable(page, found->second);
     usedBytes_ += sizeBytes;
 }
 
 void LruPages::touch(PageId page, uint64_t frameIndex) {
     Entry& entry = pages_.at(page);
     if (entry.lastFrame == frameIndex) return;
-    if (!entry.isPinned) {
-        evictable_.erase({entry.lastFrame, page});
-        evictable_.insert({frameIndex, page});
-    }
+    if (!entry.isPinned) removeEvictable(page, entry);
     entry.lastFrame = frameIndex;
+    if (!entry.isPinned) addEvictable(page, entry);
 }
 
 void LruPages::refresh(PageId page, uint64_t beforeFrame) {
@@ -35,7 +33,7 @@ void LruPages::pin(PageId page) {
     if (entry.isPinned) return;
     entry.isPinned = true;
     pinnedBytes_ += entry.sizeBytes;
-    evictable_.erase({entry.lastFrame, page});
+    removeEvictable(page, entry);
     pinned_.push_back(page);
 }
 
@@ -44,7 +42,7 @@ void LruPages::unpin(PageId page) {
     if (!entry.isPinned) return;
     entry.isPinned = false;
     pinnedBytes_ -= entry.sizeBytes;
-    evictable_.insert({entry.lastFrame, page});
+    addEvictable(page, entry);
     std::erase(pinned_, page);
 }
 
@@ -52,7 +50,7 @@ void LruPages::unpinAll() {
     for (const PageId& page : pinned_) {
         Entry& entry = pages_.at(page);
         entry.isPinned = false;
-        evictable_.insert({entry.lastFrame, page});
+        addEvictable(page, entry);
     }
     pinned_.clear();
     pinnedBytes_ = 0;
@@ -62,8 +60,20 @@ void LruPages::erase(PageId page) {
     const auto found = pages_.find(page);
     assert(found != pages_.end() && !found->second.isPinned);
     usedBytes_ -= found->second.sizeBytes;
-    evictable_.erase({found->second.lastFrame, page});
+    removeEvictable(page, found->second);
     pages_.erase(found);
+}
+
+void LruPages::addEvictable(PageId page, const Entry& entry) {
+    evictable_.insert({entry.lastFrame, page});
+    evictableBytes_[entry.lastFrame] += entry.sizeBytes;
+}
+
+void LruPages::removeEvictable(PageId page, const Entry& entry) {
+    evictable_.erase({entry.lastFrame, page});
+    const auto bytes = evictableBytes_.find(entry.lastFrame);
+    bytes->second -= entry.sizeBytes;
+    if (bytes->second == 0) evictableBytes_.erase(bytes);
 }
 
 void LruPages::reserve(uint64_t bytes) {
@@ -85,12 +95,12 @@ bool LruPages::evictOldest(std::vector<PageId>& evicted, uint64_t beforeFrame) {
 }
 
 bool LruPages::hasRoom(uint64_t neededBytes, uint64_t beforeFrame) const {
-    uint64_t freeBytes = budgetBytes_ - usedBytes();
-    for (auto key = evictable_.begin(); freeBytes < neededBytes; ++key) {
-        if (key == evictable_.end() || key->lastFrame >= beforeFrame) return false;
-        freeBytes += pages_.at(key->page).sizeBytes;
+    uint64_t heldBytes = pinnedBytes_ + reservedBytes_;
+    for (auto used = evictableBytes_.lower_bound(beforeFrame); used != evictableBytes_.end();
+         ++used) {
+        heldBytes += used->second;
     }
-    return true;
+    return neededBytes <= budgetBytes_ - heldBytes;
 }
 
 bool LruPages::makeRoom(uint64_t neededBytes, std::vector<PageId>& evicted, uint64_t beforeFrame) {

@@ -8,6 +8,7 @@
 #include "cache/page_id.h"
 
 #include <cstdint>
+#include <map>
 #include <set>
 #include <unordered_map>
 #include <vector>
@@ -43,7 +44,7 @@ public:
     // not enough: the caller then waits, or coarsens the cut. O(log pages) for each page dropped.
     [[nodiscard]] bool makeRoom(uint64_t neededBytes, std::vector<PageId>& evicted,
                                 uint64_t beforeFrame = kAnyFrame);
-    // Could makeRoom() succeed? O(pages that would go).
+    // Could makeRoom() succeed? O(frames since `beforeFrame`), however many pages would go.
     [[nodiscard]] bool hasRoom(uint64_t neededBytes, uint64_t beforeFrame = kAnyFrame) const;
     // Forgets the oldest page that is not pinned; false when there is none.
     [[nodiscard]] bool evictOldest(std::vector<PageId>& evicted, uint64_t beforeFrame = kAnyFrame);
@@ -70,10 +71,14 @@ private:
         }
     };
 
+    void addEvictable(PageId page, const Entry& entry);
+    void removeEvictable(PageId page, const Entry& entry);
+
     uint64_t budgetBytes_;
     uint64_t usedBytes_ = 0, pinnedBytes_ = 0, reservedBytes_ = 0;
     std::unordered_map<PageId, Entry, PageIdHash> pages_;
-    std::set<Key> evictable_;  // the pages that are not pinned, oldest first
+    std::set<Key> evictable_;                      // the pages that are not pinned, oldest first
+    std::map<uint64_t, uint64_t> evictableBytes_;  // of them, by the frame of last use
     std::vector<PageId> pinned_;
 };
 

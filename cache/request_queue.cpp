@@ -19,18 +19,19 @@ bool RequestQueue::isSent(const RequestKey& key) const {
 }
 
 bool RequestQueue::ask(const Request& request) {
+    assert(!std::isnan(request.priority));
     const auto [found, isNew] = requests_.try_emplace(request.key);
     Entry& entry = found->second;
     if (isNew) ++counters_.asked;
-    if (isNew || entry.frame != frame_ || (entry.request.isPrefetch && !request.isPrefetch)) {
+    const bool isFirstWant = !request.isPrefetch && entry.wantedFrame != frame_;
+    if (entry.frame != frame_ || isFirstWant) {
         entry.request = request;
-        entry.frame = frame_;
-        return !request.isPrefetch;
-    }
-    if (entry.request.isPrefetch == request.isPrefetch) {
+    } else if (request.isPrefetch == entry.request.isPrefetch) {
         entry.request.priority = std::max(entry.request.priority, request.priority);
     }
-    return false;
+    entry.frame = frame_;
+    if (!request.isPrefetch) entry.wantedFrame = frame_;
+    return isFirstWant;
 }
 
 void RequestQueue::forgetStale() {
@@ -60,37 +61,49 @@ void RequestQueue::rank() {
         if (p.key.isBlock != q.key.isBlock) return p.key.isBlock;
         return p.priority != q.priority ? p.priority > q.priority : p.key < q.key;
     });
-    std::sort(byOffset_.begin(), byOffset_.end(), [](const Entry* a, const Entry* b) {
-        return std::tuple(a->request.key.database, a->request.range.offset, a->request.key) <
-               std::tuple(b->request.key.database, b->request.range.offset, b->request.key);
-    });
+    std::sort(byOffset_.begin(), byOffset_.end(), isBefore);
 }
 
-void RequestQueue::send(const std::function<bool(const Request&)>& admit) {
+// On disk.
+bool RequestQueue::isBefore(const Entry* a, const Entry* b) {
+    return std::tuple(a->request.key.database, a->request.range.offset, a->request.key) <
+           std::tuple(b->request.key.database, b->request.range.offset, b->request.key);
+}
+
+bool RequestQueue::isReadFree(const Request& request) const {
+    const size_t limit = request.isPrefetch
+                             ? std::min(limits_.prefetchBelowReads, limits_.readsInFlight)
+                             : limits_.readsInFlight;
+    return loads_.readsInFlight() < limit;
+}
+
+void RequestQueue::send(const Admit& admit) {
     forgetStale();
+    if (loads_.readsInFlight() >= limits_.readsInFlight) return;
     rank();
     bool isFull[2] = {false, false};
-    for (size_t i = 0; i < ranked_.size() && loads_.readsInFlight() < limits_.readsInFlight; ++i) {
-        const Request& request = ranked_[i]->request;
-        if (ranked_[i]->ticket != 0 || isFull[request.key.isBlock]) continue;  // joined already
-        if (!admit(request)) {
+    for (Entry* entry : ranked_) {
+        const Request& request = entry->request;
+        if (entry->ticket != 0 || isFull[request.key.isBlock]) continue;  // joined already
+        if (!isReadFree(request)) return;
+        if (admit(request)) {
+            sendRead(entry, admit);
+        } else {
             isFull[request.key.isBlock] = true;
-            continue;
         }
-        sendRead(i, admit);
     }
 }
 
-// ranked_[first] is admitted; neighbours on disk that are wanted too, and admitted, join its read.
-void RequestQueue::sendRead(size_t first, const std::function<bool(const Request&)>& admit) {
-    const Request& best = ranked_[first]->request;
-    const auto place = static_cast<size_t>(
-        std::find(byOffset_.begin(), byOffset_.end(), ranked_[first]) - byOffset_.begin());
-    uint64_t begin = best.range.offset, end = best.range.end();
+// `best` is admitted; neighbours on disk that are wanted too, and admitted, join its read.
+void RequestQueue::sendRead(Entry* best, const Admit& admit) {
+    const auto found = std::lower_bound(byOffset_.begin(), byOffset_.end(), best, isBefore);
+    const auto place = static_cast<size_t>(found - byOffset_.begin());
+    uint64_t begin = best->request.range.offset, end = best->request.range.end();
     const auto joins = [&](const Entry& entry) {
         const Request& other = entry.request;
-        return entry.ticket == 0 && other.key.database == best.key.database &&
-               other.key.isBlock == best.key.isBlock && other.isPrefetch == best.isPrefetch;
+        return entry.ticket == 0 && other.key.database == best->request.key.database &&
+               other.key.isBlock == best->request.key.isBlock &&
+               other.isPrefetch == best->request.isPrefetch;
     };
     size_t low = place, high = place + 1;
     while (high < byOffset_.size() && joins(*byOffset_[high])) {
@@ -111,6 +124,14 @@ void RequestQueue::sendRead(size_t first, const std::function<bool(const Request
         begin = range.offset;
         --low;
     }
+    ++counters_.reads;
+    counters_.bytesRead += end - begin;
+    if (best->request.key.isBlock) counters_.blockBytesRead += end - begin;
+    sendItems(low, high);
+}
+
+// One read of byOffset_[low..high).
+void RequestQueue::sendItems(size_t low, size_t high) {
     std::vector<LoadItem> items;
     for (size_t i = low; i < high; ++i) {
         Entry& entry = *byOffset_[i];
@@ -123,8 +144,6 @@ void RequestQueue::sendRead(size_t first, const std::function<bool(const Request
                          static_cast<uint32_t>(request.key.isBlock ? request.key.id : 0),
                          request.node});
     }
-    ++counters_.reads;
-    counters_.bytesRead += end - begin;
     loads_.send(std::move(items));
 }
 
@@ -138,23 +157,27 @@ void RequestQueue::collect(std::vector<Arrival>& arrivals) {
         tickets_.erase(ticket);
         Entry& entry = found->second;
         entry.ticket = 0;
+        Request request = entry.request;
+        request.isPrefetch = entry.wantedFrame == 0;
+        const uint64_t framesSinceAsked = frame_ - entry.frame;
         const bool isHere = result.page || result.block;
         if (!isHere && ++entry.failures < limits_.attempts) {
             entry.notBeforeS =
                 clock_.nowS() + limits_.firstPauseS * std::exp2(entry.failures - 1.0);
             ++counters_.retried;
             // The room that was reserved is given back: the request is admitted anew.
-            arrivals.push_back({entry.request, {result.ticket, {}, {}, {}}});
+            arrivals.push_back({request, {result.ticket, {}, {}, {}}, framesSinceAsked});
             continue;
         }
         counters_.failed += !isHere;
-        arrivals.push_back({std::move(entry.request), std::move(result)});
+        if (!isHere && result.fault.empty()) result.fault = "cannot be read";
+        arrivals.push_back({request, std::move(result), framesSinceAsked});
         requests_.erase(found);
     }
 }
 
 bool RequestQueue::waitForArrival() {
-    if (loads_.readsInFlight() > 0) return loads_.waitForArrival();
+    if (!tickets_.empty() && loads_.waitForArrival()) return true;
     double nextS = std::numeric_limits<double>::infinity();
     for (const auto& [key, entry] : requests_) {
         if (entry.frame == frame_ && entry.notBeforeS > clock_.nowS()) {

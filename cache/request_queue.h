@@ -42,6 +42,7 @@ class RequestQueue {
 public:
     struct Limits {
         size_t readsInFlight = 16;
+        size_t prefetchBelowReads = 4;    // in flight: above, reads stay free for what is wanted
         uint64_t joinGapBytes = 8 << 10;  // bytes read in vain rather than a second read
         uint64_t readBytes = 1 << 20;     // of one joined read
         uint32_t attempts = 4;
@@ -49,27 +50,30 @@ public:
     };
     struct Counters {
         uint64_t asked = 0, sent = 0, reads = 0, cancelled = 0, retried = 0, failed = 0;
-        uint64_t bytesAsked = 0;  // ranges of what was sent
-        uint64_t bytesRead = 0;   // with the gaps of joined reads
+        uint64_t bytesAsked = 0;      // ranges of what was sent
+        uint64_t bytesRead = 0;       // with the gaps of joined reads
+        uint64_t blockBytesRead = 0;  // of them, for index blocks
     };
     // What came of a request. With a fault every attempt has failed; with neither page, block nor
     // fault this one has, and there will be another: what admit() reserved is given back meanwhile.
     struct Arrival {
         Request request;
         LoadResult result;
+        uint64_t framesSinceAsked = 0;  // a stale one that had been sent may come late
     };
 
     // Both outlive it.
     RequestQueue(LoadQueue& loads, Clock& clock, Limits limits);
 
     void beginFrame() { ++frame_; }
-    // Asks, or ranks anew: within a frame the greatest priority holds, and a want beats a prefetch.
-    // True the first time in a frame that it is wanted (not prefetched).
+    // Asks, or ranks anew: within a frame the greatest priority (a number, asserted) holds, and a
+    // want beats a prefetch. True the first time in a frame that it is wanted (not prefetched).
+    // What was wanted once arrives as wanted (Arrival::request), even if only prefetched since.
     bool ask(const Request& request);
     // Sends the best ones while reads are free. `admit` says whether there is room for it (and
     // reserves it); one that is not admitted waits, and so does everything less urgent of its kind
     // (pages or blocks): the best must not starve. Requests nobody asked for in this frame are
-    // forgotten.
+    // forgotten. O(n log n) of those that wait.
     void send(const std::function<bool(const Request&)>& admit);
     // Appends what came of requests that were sent.
     void collect(std::vector<Arrival>& arrivals);
@@ -88,14 +92,19 @@ public:
 private:
     struct Entry {
         Request request;
-        uint64_t frame = 0;   // when it was last asked for
-        uint64_t ticket = 0;  // 0: not sent
+        uint64_t frame = 0;        // when it was last asked for
+        uint64_t wantedFrame = 0;  // 0: never
+        uint64_t ticket = 0;       // 0: not sent
         uint32_t failures = 0;
         double notBeforeS = 0;
     };
+    using Admit = std::function<bool(const Request&)>;
     void forgetStale();
     void rank();
-    void sendRead(size_t first, const std::function<bool(const Request&)>& admit);
+    [[nodiscard]] static bool isBefore(const Entry* a, const Entry* b);
+    [[nodiscard]] bool isReadFree(const Request& request) const;
+    void sendRead(Entry* best, const Admit& admit);
+    void sendItems(size_t low, size_t high);
 
     LoadQueue& loads_;
     Clock& clock_;
@@ -105,7 +114,7 @@ private:
     std::vector<Entry*> ranked_;    // waiting, best first
     std::vector<Entry*> byOffset_;  // the same, by place on disk
     std::vector<LoadResult> results_;
-    uint64_t frame_ = 0, nextTicket_ = 1;
+    uint64_t frame_ = 1, nextTicket_ = 1;
     Counters counters_;
 };
 

@@ -1,5 +1,7 @@
 #include "cache/residency.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -13,6 +15,11 @@ constexpr uint64_t kKeptFrames = 2;
 template <typename T>
 uint64_t bytesOf(const std::vector<T>& items) {
     return items.size() * sizeof(T);
+}
+
+std::string tooLarge(uint64_t bytes, const char* memory, uint64_t budgetBytes) {
+    return fmt::format("page takes {} bytes of {} memory, more than the whole budget of {}", bytes,
+                       memory, budgetBytes);
 }
 
 RequestKey keyOf(PageId id) {
@@ -59,11 +66,17 @@ void Residency::dropAll() {
     std::vector<PageId> evicted;
     while (gpuLru_.evictOldest(evicted)) {
     }
-    for (const PageId& page : evicted) gpu_.drop(page);
+    dropFromGpu(evicted);
 }
 
 uint64_t Residency::keepSinceFrame() const {
     return frameIndex_ > kKeptFrames ? frameIndex_ - kKeptFrames : 0;
+}
+
+// keep() marks with the frame before keepSinceFrame(): a prefetch leaves that in place too.
+uint64_t Residency::evictBeforeFrame(bool isPrefetch) const {
+    const uint64_t since = keepSinceFrame();
+    return isPrefetch ? since - std::min<uint64_t>(since, 1) : since;
 }
 
 void Residency::beginFrame(uint64_t frameIndex) {
@@ -80,54 +93,66 @@ void Residency::uploadArrived() {
 
 void Residency::upload(uint64_t boundBytes) {
     struct Candidate {
+        bool isPrefetch;
         double priority;
         PageId id;
     };
+    // What nobody wants any more stays in host memory while there is room.
+    std::erase_if(waiting_, [&](const auto& item) {
+        return item.second.frame + kKeptFrames < frameIndex_ || !decoded_.contains(item.first);
+    });
     std::vector<Candidate> candidates;
-    for (auto entry = waiting_.begin(); entry != waiting_.end();) {
-        if (entry->second.frame + kKeptFrames < frameIndex_ || !decoded_.contains(entry->first)) {
-            entry =
-                waiting_.erase(entry);  // wanted no more: stays in host memory while there is room
-        } else {
-            candidates.push_back({entry->second.priority, entry->first});
-            ++entry;
-        }
+    for (const auto& [id, wanted] : waiting_) {
+        candidates.push_back({prefetched_.contains(id), wanted.priority, id});
     }
     std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+        if (a.isPrefetch != b.isPrefetch) return b.isPrefetch;
         return a.priority != b.priority ? a.priority > b.priority : a.id < b.id;
     });
-    uint64_t uploadedBytes = 0;
-    waitingBytes_ = 0;
+    const uint64_t bytesBefore = counters_.bytesUploaded;
+    toUpload_ = {};
     bool isFull = false;
     for (const Candidate& candidate : candidates) {
         const ooc::Page& page = decoded_.at(candidate.id);
         const uint64_t sizeBytes = gpu_.sizeBytes(page);
-        const uint64_t leftBytes = boundBytes - std::min(boundBytes, uploadedBytes);
+        const uint64_t doneBytes = counters_.bytesUploaded - bytesBefore;
+        const uint64_t leftBytes = boundBytes - std::min(boundBytes, doneBytes);
         // Once one does not fit, none behind it goes: the best must not starve.
-        isFull = isFull || (uploadedBytes > 0 && sizeBytes > leftBytes) ||
-                 !uploadOne(candidate.id, page);
-        (isFull ? waitingBytes_ : uploadedBytes) += sizeBytes;
+        isFull =
+            isFull || (doneBytes > 0 && sizeBytes > leftBytes) || !uploadOne(candidate.id, page);
+        if (isFull) toUpload_.of(candidate.isPrefetch) += sizeBytes;
     }
 }
 
 // False when there is no room for it yet.
 bool Residency::uploadOne(PageId id, const ooc::Page& page) {
     const uint64_t sizeBytes = gpu_.sizeBytes(page);
+    const bool isPrefetch = prefetched_.contains(id);
+    const uint64_t before = evictBeforeFrame(isPrefetch);
     std::vector<PageId> evicted;
-    if (!gpuLru_.makeRoom(sizeBytes, evicted, keepSinceFrame())) return false;
-    dropEvicted(evicted);
+    if (sizeBytes > gpuLru_.budgetBytes()) {  // longer than its record foretold
+        fail(id, tooLarge(sizeBytes, "GPU", gpuLru_.budgetBytes()));
+        return true;
+    }
+    if (!gpuLru_.makeRoom(sizeBytes, evicted, before)) return false;
+    dropFromGpu(evicted);
     GpuPages::Upload done = gpu_.upload(id, page);
-    while (done == GpuPages::Upload::NoRoom && gpuLru_.evictOldest(evicted, keepSinceFrame())) {
-        dropEvicted(evicted);
+    while (done == GpuPages::Upload::NoRoom && gpuLru_.evictOldest(evicted, before)) {
+        dropFromGpu(evicted);
         done = gpu_.upload(id, page);
     }
-    if (done == GpuPages::Upload::NoRoom) return false;
+    if (done == GpuPages::Upload::NoRoom) {
+        if (gpuLru_.pageCount() > 0) return false;
+        fail(id, tooLarge(sizeBytes, "GPU", gpuLru_.budgetBytes()));  // gaps are shorter than that
+        return true;
+    }
     waiting_.erase(id);
     if (done == GpuPages::Upload::Refused) {
         fail(id, "page has more vertices than can be drawn");
         return true;
     }
-    gpuLru_.insert(id, sizeBytes, frameIndex_);
+    // Prefetched, it is as old as what is kept, so that it is never in the way.
+    gpuLru_.insert(id, sizeBytes, isPrefetch ? evictBeforeFrame(true) : frameIndex_);
     ++counters_.uploadedPages;
     counters_.bytesUploaded += sizeBytes;
     return true;
@@ -145,11 +170,13 @@ PageState Residency::want(const PageRequest& request, bool isStandIn) {
         demand(id, gpuLru_.sizeBytes(id), isStandIn);
         return PageState::Resident;
     }
-    if (failed_.contains(id)) return PageState::Failed;
+    if (failed_.contains(id) || !couldFit(request)) return PageState::Failed;
     bool isFirst = false;
     if (decoded_.contains(id)) {
         hostLru_.touch(id, frameIndex_);
-        Wanted& wanted = waiting_[id];
+        const auto [found, isNew] = waiting_.try_emplace(id);
+        if (isNew) toUpload_.wantedBytes += gpu_.sizeBytes(request.node);
+        Wanted& wanted = found->second;
         isFirst = wanted.frame != frameIndex_;
         wanted.priority = isFirst ? request.priority : std::max(wanted.priority, request.priority);
         wanted.frame = frameIndex_;
@@ -172,39 +199,51 @@ void Residency::keep(PageId page) {
 
 void Residency::prefetch(const PageRequest& request) {
     if (gpuLru_.contains(request.id) || decoded_.contains(request.id) ||
-        failed_.contains(request.id)) {
+        failed_.contains(request.id) || !couldFit(request)) {
         return;
     }
     requests_.ask(
         {keyOf(request.id), pageRange(request.node), request.priority, true, request.node});
 }
 
+// Fails it when it never can.
+bool Residency::couldFit(const PageRequest& request) {
+    const uint64_t gpuBytes = gpu_.sizeBytes(request.node);
+    const uint64_t hostBytes = request.node.pageBytes + decodedBytes(request.node);
+    if (gpuBytes > gpuLru_.budgetBytes()) {
+        fail(request.id, tooLarge(gpuBytes, "GPU", gpuLru_.budgetBytes()));
+    } else if (hostBytes > hostLru_.budgetBytes()) {
+        fail(request.id, tooLarge(hostBytes, "host", hostLru_.budgetBytes()));
+    } else {
+        return true;
+    }
+    return false;
+}
+
 bool Residency::admit(const Request& request) {
     const uint64_t gpuBytes = gpu_.sizeBytes(request.node);
+    uint64_t comingBytes = gpuBytes + sent_.wantedBytes + toUpload_.wantedBytes;
+    if (request.isPrefetch) comingBytes += sent_.prefetchedBytes + toUpload_.prefetchedBytes;
+    if (!gpuLru_.hasRoom(comingBytes, evictBeforeFrame(request.isPrefetch))) return false;
     const uint64_t hostBytes = request.range.bytes + decodedBytes(request.node);
-    if (gpuBytes > gpuLru_.budgetBytes() || hostBytes > hostLru_.budgetBytes()) {
-        fail({request.key.database, request.node.id}, "page is larger than a memory budget");
-        return false;
-    }
-    if (!gpuLru_.hasRoom(gpuBytes + onTheirWayBytes_ + waitingBytes_, keepSinceFrame()))
-        return false;
     std::vector<PageId> evicted;
     // Decoded pages that wait to be uploaded were touched lately; the others are copies.
     if (!hostLru_.makeRoom(hostBytes, evicted, frameIndex_)) return false;
-    for (const PageId& page : evicted) decoded_.erase(page);
+    dropFromHost(evicted);
     hostLru_.reserve(hostBytes);
-    reserved_[request.key] = hostBytes;
-    onTheirWayBytes_ += gpuBytes;
+    reserved_[request.key] = {hostBytes, gpuBytes, request.isPrefetch};
+    sent_.of(request.isPrefetch) += gpuBytes;
     return true;
 }
 
 void Residency::arrive(RequestQueue::Arrival& arrival) {
     const Request& request = arrival.request;
     const PageId id{request.key.database, request.node.id};
-    const auto reservation = reserved_.find(request.key);
-    hostLru_.release(reservation->second);
-    reserved_.erase(reservation);
-    onTheirWayBytes_ -= gpu_.sizeBytes(request.node);
+    const auto found = reserved_.find(request.key);
+    const Reservation reservation = found->second;
+    reserved_.erase(found);
+    hostLru_.release(reservation.hostBytes);
+    sent_.of(reservation.isPrefetch) -= reservation.gpuBytes;
     if (!arrival.result.page) {
         if (!arrival.result.fault.empty()) fail(id, std::move(arrival.result.fault));
         return;
@@ -215,29 +254,44 @@ void Residency::arrive(RequestQueue::Arrival& arrival) {
         ++counters_.reloadedPages;
         counters_.bytesReloaded += request.range.bytes;
     }
-    if (request.isPrefetch) {
-        counters_.prefetchedBytes += request.range.bytes;
-        prefetched_[id] = request.range.bytes;
-    }
+    if (request.isPrefetch) counters_.prefetchedBytes += request.range.bytes;
     const uint64_t sizeBytes = decodedBytes(*arrival.result.page);
+    if (sizeBytes > hostLru_.budgetBytes()) {  // longer than its record foretold
+        fail(id, tooLarge(sizeBytes, "host", hostLru_.budgetBytes()));
+        return;
+    }
     std::vector<PageId> evicted;
     if (!hostLru_.makeRoom(sizeBytes, evicted)) return;  // strips longer than foretold: asked again
-    for (const PageId& page : evicted) decoded_.erase(page);
+    dropFromHost(evicted);
     hostLru_.insert(id, sizeBytes, frameIndex_);
     decoded_.emplace(id, std::move(*arrival.result.page));
-    waitingBytes_ += gpu_.sizeBytes(request.node);
-    waiting_[id] = {frameIndex_, request.isPrefetch ? -1.0 : request.priority};
+    if (request.isPrefetch) prefetched_[id] = request.range.bytes;
+    toUpload_.of(request.isPrefetch) += reservation.gpuBytes;
+    const uint64_t askedFrame = frameIndex_ - std::min(frameIndex_, arrival.framesSinceAsked);
+    waiting_[id] = {askedFrame, request.priority};
 }
 
 void Residency::fail(PageId id, std::string what) {
+    waiting_.erase(id);
     if (!failed_.insert(id).second) return;
     faults_.push_back({id, std::move(what)});
     ++counters_.failedPages;
 }
 
-void Residency::dropEvicted(std::vector<PageId>& evicted) {
-    for (const PageId& page : evicted) gpu_.drop(page);
+void Residency::dropFromGpu(std::vector<PageId>& evicted) {
+    for (const PageId& page : evicted) {
+        gpu_.drop(page);
+        if (!decoded_.contains(page)) prefetched_.erase(page);
+    }
     counters_.evictedPages += evicted.size();
+    evicted.clear();
+}
+
+void Residency::dropFromHost(std::vector<PageId>& evicted) {
+    for (const PageId& page : evicted) {
+        decoded_.erase(page);
+        if (!gpuLru_.contains(page)) prefetched_.erase(page);
+    }
     evicted.clear();
 }
 

@@ -2,7 +2,8 @@
 // budgets, never exceeded: host memory holds what is being read (reserved before it is sent) and
 // decoded pages, GPU memory uploaded ones; both go least recently used first. What a frame wants is
 // pinned until the next one begins; what was used in the last two frames is not evicted for
-// something else, so that nothing on the screen gets coarser because something else loads.
+// something else, so that nothing on the screen gets coarser because something else loads. What was
+// prefetched gives way to all that: it takes only room that nobody used or kept lately.
 // Render thread only. Its place in a frame: docs/frame.md.
 #pragma once
 
@@ -21,7 +22,8 @@ namespace pagoda::cache {
 enum class PageState {
     Resident,  // uploaded, and kept for this frame
     Absent,    // asked for; an ancestor stands in
-    Failed,    // cannot be had: listed in faults(); an ancestor stands in
+    Failed,    // cannot be had, or is larger than a whole budget: listed in faults(); an ancestor
+               // stands in
 };
 
 struct PageRequest {
@@ -44,14 +46,13 @@ public:
     };
     struct Counters {
         uint64_t loadedPages = 0;
-        uint64_t bytesRead =
-            0;  // encoded pages that arrived, without what joined reads bring along
+        uint64_t bytesRead = 0;  // encoded, of what arrived, without gaps of joined reads
         uint64_t uploadedPages = 0, bytesUploaded = 0;
         uint64_t evictedPages = 0;                      // from GPU memory
         uint64_t reloadedPages = 0, bytesReloaded = 0;  // read although read before
         uint64_t failedPages = 0;
         uint64_t prefetchedBytes = 0;      // encoded, arrived before any frame wanted them
-        uint64_t usedPrefetchedBytes = 0;  // of them, wanted later
+        uint64_t usedPrefetchedBytes = 0;  // of them, wanted later and still there
     };
 
     // `requests` and `gpu` outlive it.
@@ -81,7 +82,7 @@ public:
 
     void dropAll();  // from GPU memory
 
-    // For RequestQueue::send() and collect(): is there room, and here it is.
+    // For RequestQueue::send() and collect(): is there room, and here it is. Between frames.
     [[nodiscard]] bool admit(const Request& request);
     void arrive(RequestQueue::Arrival& arrival);
 
@@ -102,26 +103,41 @@ private:
         uint64_t frame = 0;
         double priority = 0;
     };
+    struct Reservation {
+        uint64_t hostBytes = 0, gpuBytes = 0;
+        bool isPrefetch = false;
+    };
+    // GPU bytes of what is not there yet.
+    struct Coming {
+        uint64_t wantedBytes = 0, prefetchedBytes = 0;
+        [[nodiscard]] uint64_t& of(bool isPrefetch) {
+            return isPrefetch ? prefetchedBytes : wantedBytes;
+        }
+    };
+    [[nodiscard]] bool couldFit(const PageRequest& request);
     void upload(uint64_t boundBytes);
     [[nodiscard]] bool uploadOne(PageId id, const ooc::Page& page);
     void demand(PageId id, uint64_t sizeBytes, bool isStandIn);
     void fail(PageId id, std::string what);
-    void dropEvicted(std::vector<PageId>& evicted);
+    void dropFromGpu(std::vector<PageId>& evicted);
+    void dropFromHost(std::vector<PageId>& evicted);
     [[nodiscard]] uint64_t keepSinceFrame() const;
+    [[nodiscard]] uint64_t evictBeforeFrame(bool isPrefetch) const;
 
     RequestQueue& requests_;
     GpuPages& gpu_;
     uint64_t uploadBytesPerFrame_;
     LruPages hostLru_, gpuLru_;
     std::unordered_map<PageId, ooc::Page, PageIdHash> decoded_;
-    std::unordered_map<PageId, Wanted, PageIdHash> waiting_;             // decoded, to be uploaded
-    std::unordered_map<RequestKey, uint64_t, RequestKeyHash> reserved_;  // host bytes
+    std::unordered_map<PageId, Wanted, PageIdHash> waiting_;  // decoded, to be uploaded
+    std::unordered_map<RequestKey, Reservation, RequestKeyHash> reserved_;  // sent for
     std::unordered_set<PageId, PageIdHash> failed_;
     std::unordered_set<PageId, PageIdHash> everLoaded_;
-    std::unordered_map<PageId, uint64_t, PageIdHash> prefetched_;  // not yet wanted: encoded bytes
+    // In memory and not yet wanted: encoded bytes.
+    std::unordered_map<PageId, uint64_t, PageIdHash> prefetched_;
     std::vector<PageFault> faults_;
-    uint64_t onTheirWayBytes_ = 0;  // GPU bytes of pages that were sent for
-    uint64_t waitingBytes_ = 0;     // GPU bytes of pages that wait to be uploaded
+    Coming sent_;                                      // sent for
+    Coming toUpload_;                                  // waiting to be uploaded
     std::unordered_set<PageId, PageIdHash> demanded_;  // in this frame
     uint64_t demandBytes_ = 0, missingPages_ = 0;
     Counters counters_;

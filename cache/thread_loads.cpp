@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cassert>
-#include <new>
+#include <exception>
+#include <iterator>
+#include <string>
 #include <utility>
 
 namespace pagoda::cache {
@@ -22,6 +24,31 @@ LoadResult decodeItem(const PageSource& source, const LoadItem& item,
     }
     return result;
 }
+
+namespace {
+
+// Empty when done, else why not. Sizes come from a file: one that lies must not end the program.
+std::string readInto(std::vector<std::byte>& buffer, const PageSource& source, uint64_t offset,
+                     uint64_t bytes) {
+    try {
+        buffer.resize(bytes);
+        return source.read(offset, buffer);
+    } catch (const std::exception&) {
+        buffer.clear();
+        return "not enough memory to read it";
+    }
+}
+
+LoadResult decodeSafely(const PageSource& source, const LoadItem& item,
+                        std::span<const std::byte> bytes) {
+    try {
+        return decodeItem(source, item, bytes);
+    } catch (const std::exception&) {
+        return {item.ticket, {}, {}, "not enough memory to decode it"};
+    }
+}
+
+}  // namespace
 
 ThreadLoads::ThreadLoads(std::vector<const PageSource*> sources, size_t threadCount)
     : sources_(std::move(sources)) {
@@ -80,49 +107,34 @@ void ThreadLoads::work() {
             ++reading_;
         }
         load(items, buffer);
-        {
-            const std::lock_guard lock(queueMutex_);
-            --reading_;
-        }
-        hasArrivals_.notify_all();
     }
 }
 
 void ThreadLoads::load(const std::vector<LoadItem>& items, std::vector<std::byte>& buffer) {
     const PageSource& source = *sources_[items.front().database];
     const uint64_t begin = items.front().range.offset;
-    bool isRead = false;
-    // Sizes come from a file: one that lies must not end the program.
-    try {
-        buffer.resize(items.back().range.end() - begin);
-        isRead = source.read(begin, buffer).empty();
-    } catch (const std::bad_alloc&) {
-        buffer.clear();
-    }
+    const std::string fault = readInto(buffer, source, begin, items.back().range.end() - begin);
     for (const LoadItem& item : items) {
-        try {
-            if (isRead) {
-                const std::span<const std::byte> whole(buffer);
-                deliver(decodeItem(source, item,
-                                   whole.subspan(item.range.offset - begin, item.range.bytes)));
-                continue;
-            }
-            std::vector<std::byte> alone(item.range.bytes);
-            std::string fault = source.read(item.range.offset, alone);
-            deliver(fault.empty() ? decodeItem(source, item, alone)
-                                  : LoadResult{item.ticket, {}, {}, std::move(fault)});
-        } catch (const std::bad_alloc&) {
-            deliver({item.ticket, {}, {}, "not enough memory to decode it"});
+        LoadResult result;
+        if (fault.empty()) {
+            const std::span<const std::byte> whole(buffer);
+            result = decodeSafely(source, item,
+                                  whole.subspan(item.range.offset - begin, item.range.bytes));
+        } else {
+            std::vector<std::byte> alone;
+            std::string own = items.size() == 1
+                                  ? fault
+                                  : readInto(alone, source, item.range.offset, item.range.bytes);
+            result = own.empty() ? decodeSafely(source, item, alone)
+                                 : LoadResult{item.ticket, {}, {}, std::move(own)};
         }
+        {
+            const std::lock_guard lock(queueMutex_);
+            arrived_.push_back(std::move(result));
+            if (&item == &items.back()) --reading_;
+        }
+        hasArrivals_.notify_all();
     }
-}
-
-void ThreadLoads::deliver(LoadResult result) {
-    {
-        const std::lock_guard lock(queueMutex_);
-        arrived_.push_back(std::move(result));
-    }
-    hasArrivals_.notify_all();
 }
 
 }  // namespace pagoda::cache

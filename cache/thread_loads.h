@@ -1,6 +1,7 @@
 // thread_loads.h: a small pool of threads that read (pread) and decode. Reads begin in the order
 // they were sent; items arrive as they are decoded. When a joined read fails, each of its items is
-// read alone, so that a fault costs only what it covers.
+// read alone, so that a fault costs only what it covers. Each thread keeps a buffer as long as the
+// longest read it has done.
 #pragma once
 
 #include "cache/load_queue.h"
@@ -29,7 +30,6 @@ public:
 private:
     void work();
     void load(const std::vector<LoadItem>& items, std::vector<std::byte>& buffer);
-    void deliver(LoadResult result);
 
     std::vector<const PageSource*> sources_;
     mutable std::mutex queueMutex_;  // guards the members below but the threads

@@ -1,182 +1,334 @@
+// What is wanted, pinned, evicted, uploaded and counted. Budgets in any order of events:
+// residency_soak_test.cpp; prefetching: prefetch_test.cpp.
 #include "cache/residency.h"
-#include "cache/index_cache.h"
 
+#include "scripted_world.h"
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <map>
 #include <random>
-#include <set>
 
 namespace pagoda::cache {
 namespace {
 
-// Pages of one triangle with `vertices` vertices, numbered by their node id.
-class ScriptedPages final : public PageSource {
-public:
-    ooc::Loaded<ooc::Page> loadPage(const ooc::NodeRecord& node) override {
-        ++loads;
-        if (failing.contains(node.id)) return {std::nullopt, "page is cut short"};
-        ooc::Page page;
-        page.mesh.positions.resize(node.vertexCount);
-        return {std::move(page), ""};
-    }
-    ooc::Loaded<ooc::IndexBlock> loadBlock(uint32_t block) override {
-        ++blockLoads;
-        if (block == 13) return {std::nullopt, "checksum is wrong"};
-        return {ooc::IndexBlock{std::vector<ooc::NodeRecord>(2)}, ""};
-    }
-    std::set<ooc::NodeId> failing;
-    int loads = 0, blockLoads = 0;
-};
+using test::pageOf;
+using test::Tree;
+using test::World;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
-class CountingGpu final : public GpuPages {
-public:
-    uint64_t sizeBytes(const ooc::Page& page) const override { return page.mesh.positions.size(); }
-    Upload upload(PageId id, const ooc::Page& page) override {
-        if (page.mesh.positions.size() > 500) return Upload::Refused;
-        if (fragmented > 0) {
-            --fragmented;
-            return Upload::NoRoom;
-        }
-        EXPECT_TRUE(resident.emplace(id, sizeBytes(page)).second);
-        return Upload::Done;
-    }
-    void drop(PageId id) override { EXPECT_EQ(resident.erase(id), 1u); }
-    uint64_t usedBytes() const {
-        uint64_t sum = 0;
-        for (const auto& [id, bytes] : resident) sum += bytes;
-        return sum;
-    }
-    std::map<PageId, uint64_t> resident;
-    int fragmented = 0;
-};
+constexpr uint64_t kPlenty = uint64_t{1} << 20;
 
-struct Fixture {
-    ScriptedPages pages;
-    CountingGpu gpu;
-    std::map<uint64_t, ooc::NodeRecord> records;
-
-    PageRequest request(uint64_t node, uint32_t vertices) {
-        ooc::NodeRecord& record = records[node];
-        record.id = ooc::NodeId{node};
-        record.vertexCount = vertices;
-        record.pageBytes = vertices * 3;
-        return {{0, record.id}, record};
-    }
-};
-
-TEST(Residency, LoadsAPageOnceAndKeepsIt) {
-    Fixture f;
-    Residency residency({.hostBytes = 0, .gpuBytes = 100}, f.pages, f.gpu);
-    residency.beginFrame(1);
-    EXPECT_EQ(residency.want(f.request(1, 50)), PageState::Resident);
-    EXPECT_EQ(residency.want(f.request(1, 50)), PageState::Resident);
-    EXPECT_EQ(f.pages.loads, 1);
-    EXPECT_EQ(residency.counters().bytesRead, 150u);
+TEST(Residency, AnAbsentPageIsAskedForOnceAndIsThereInTheNextFrame) {
+    const Tree tree;
+    World world;
+    world.begin();
+    EXPECT_EQ(world.want(tree.root()), PageState::Absent);
+    EXPECT_EQ(world.want(tree.root()), PageState::Absent);
+    EXPECT_EQ(world.residency.missingPages(), 1u);
+    world.end();
+    world.begin();
+    EXPECT_EQ(world.want(tree.root()), PageState::Resident);
+    EXPECT_EQ(world.residency.missingPages(), 0u);
+    world.end();
+    EXPECT_EQ(world.loads.reads.size(), 1u);
+    EXPECT_EQ(world.residency.counters().loadedPages, 1u);
+    EXPECT_EQ(world.residency.counters().bytesRead, 100u);
+    EXPECT_EQ(world.residency.counters().bytesUploaded, 10u);
 }
 
-TEST(Residency, APageThatCannotBeReadCostsThatPageAloneAndIsCountedOnce) {
-    Fixture f;
-    f.pages.failing.insert(ooc::NodeId{3});
-    Residency residency({.hostBytes = 0, .gpuBytes = 100}, f.pages, f.gpu);
-    residency.beginFrame(1);
-    EXPECT_EQ(residency.want(f.request(2, 10)), PageState::Resident);
-    EXPECT_EQ(residency.want(f.request(3, 10)), PageState::Failed);
-    EXPECT_EQ(residency.want(f.request(3, 10)), PageState::Failed);
-    EXPECT_EQ(residency.want(f.request(4, 10)), PageState::Resident);
-    EXPECT_EQ(f.pages.loads, 3);
-    EXPECT_EQ(residency.counters().failedPages, 1u);
-    ASSERT_EQ(residency.faults().size(), 1u);
-    EXPECT_EQ(residency.faults().front().what, "page is cut short");
-}
-
-TEST(Residency, SaysNoRoomWhenTheFramesOwnPagesFillTheBudget) {
-    Fixture f;
-    Residency residency({.hostBytes = 0, .gpuBytes = 100}, f.pages, f.gpu);
-    residency.beginFrame(1);
-    EXPECT_EQ(residency.want(f.request(1, 60)), PageState::Resident);
-    EXPECT_EQ(residency.want(f.request(2, 60)), PageState::NoRoom);
-    EXPECT_TRUE(residency.isResident({0, ooc::NodeId{1}}));
-    residency.beginFrame(2);
-    EXPECT_EQ(residency.want(f.request(2, 60)), PageState::Resident);
-    EXPECT_FALSE(residency.isResident({0, ooc::NodeId{1}}));
-    EXPECT_TRUE(residency.faults().empty());
-}
-
-TEST(Residency, DropsMorePagesWhenGapsAreTooShort) {
-    Fixture f;
-    Residency residency({.hostBytes = 0, .gpuBytes = 100}, f.pages, f.gpu);
-    residency.beginFrame(1);
-    for (uint64_t node = 1; node <= 4; ++node) {
-        EXPECT_EQ(residency.want(f.request(node, 20)), PageState::Resident);
+TEST(Residency, WhatIsOnItsWayIsReservedAndGivenBackWhenItFails) {
+    const Tree tree;
+    World world;
+    world.loads.failing = {tree.child(0).id.value};
+    world.loads.hold();
+    world.frames(1, {&tree.root(), &tree.child(0)});
+    const uint64_t foretold = 100 + decodedBytes(tree.root());
+    EXPECT_EQ(world.residency.hostUsedBytes(), 2 * foretold);
+    world.loads.letGo();
+    world.begin();
+    EXPECT_EQ(world.residency.hostUsedBytes(), sizeof(ooc::Page) + 10 * sizeof(Vec3i));
+    for (int i = 0; i < 10; ++i) {
+        world.want(tree.child(0));
+        world.end();
+        world.clock.advance(1);
+        world.begin();
     }
-    residency.beginFrame(2);
-    f.gpu.fragmented = 2;
-    EXPECT_EQ(residency.want(f.request(9, 20)), PageState::Resident);
-    EXPECT_EQ(f.gpu.resident.size(), 3u);
-    EXPECT_EQ(residency.counters().evictedPages, 2u);
+    EXPECT_EQ(world.want(tree.child(0)), PageState::Failed);
+    EXPECT_EQ(world.residency.hostUsedBytes(), sizeof(ooc::Page) + 10 * sizeof(Vec3i));
 }
 
-TEST(Residency, UploadsADecodedPageAgainWithoutReadingIt) {
-    Fixture f;
-    Residency residency({.hostBytes = 1 << 20, .gpuBytes = 100}, f.pages, f.gpu);
-    residency.beginFrame(1);
-    EXPECT_EQ(residency.want(f.request(1, 80)), PageState::Resident);
-    residency.beginFrame(2);
-    EXPECT_EQ(residency.want(f.request(2, 80)), PageState::Resident);
-    residency.beginFrame(3);
-    EXPECT_EQ(residency.want(f.request(1, 80)), PageState::Resident);
-    EXPECT_EQ(f.pages.loads, 2);
-    EXPECT_EQ(residency.counters().uploadedPages, 3u);
+TEST(Residency, AFailingPageIsListedOnceNeverAskedAgainAndCostsThatPageAlone) {
+    const Tree tree;
+    World world;
+    world.loads.failing = {tree.child(3).id.value};
+    for (int i = 0; i < 10; ++i) {
+        world.frames(1, {&tree.root(), &tree.child(2), &tree.child(3), &tree.child(4)});
+        world.clock.advance(1);
+    }
+    EXPECT_TRUE(world.isResident(tree.child(2)) && world.isResident(tree.child(4)));
+    ASSERT_EQ(world.residency.faults().size(), 1u);
+    EXPECT_EQ(world.residency.faults()[0].id, pageOf(tree.child(3)));
+    EXPECT_EQ(world.residency.faults()[0].what, "scripted fault");
+    EXPECT_EQ(world.residency.counters().failedPages, 1u);
+    EXPECT_EQ(world.residency.state(pageOf(tree.child(3))), PageState::Failed);
+    EXPECT_EQ(world.residency.missingPages(), 0u);
+    EXPECT_EQ(world.requests.counters().sent, 3u + RequestQueue::Limits{}.attempts);
+}
+
+TEST(Residency, ResultsOutOfOrderAndInPartsArriveAllTheSame) {
+    const Tree tree({.gapBytes = 1 << 20});  // nothing joins
+    World world;
+    world.loads.hold();
+    world.frames(1, {&tree.root(), &tree.child(0), &tree.child(1)});
+    world.loads.answer(2);
+    world.frames(1, {&tree.root(), &tree.child(0), &tree.child(1)});
+    EXPECT_TRUE(world.isResident(tree.child(1)));
+    EXPECT_EQ(world.residency.missingPages(), 2u);
+    world.loads.answerAllInReverse();
+    world.frames(1, {&tree.root(), &tree.child(0), &tree.child(1)});
+    EXPECT_EQ(world.residency.missingPages(), 0u);
+    EXPECT_EQ(world.loads.reads.size(), 3u);
+}
+
+TEST(Residency, APageThatComesLateWhenNobodyWantsItIsNotUploadedButKeptInHostMemory) {
+    const Tree tree;
+    World world;
+    world.loads.hold();
+    world.frames(1, {&tree.root()});
+    world.frames(5, {});
+    world.loads.letGo();
+    world.frames(3, {});
+    EXPECT_EQ(world.residency.counters().loadedPages, 1u);
+    EXPECT_THAT(world.gpu.uploaded, IsEmpty());
+    world.frames(2, {&tree.root()});  // from host memory
+    EXPECT_TRUE(world.isResident(tree.root()));
+    EXPECT_EQ(world.loads.reads.size(), 1u);
+}
+
+TEST(Residency, WhatNeverArrivesHoldsItsReservationAndNothingElse) {
+    const Tree tree({.gapBytes = 1 << 20});
+    World world({{kPlenty, 20, 0}, {}});
+    world.loads.hold();
+    world.frames(1, {&tree.child(0)});
+    const uint64_t reserved = world.residency.hostUsedBytes();
+    for (int i = 1; i < 8; ++i) {
+        world.frames(1, {&tree.child(1)});
+        if (i == 1) world.loads.answer(1);
+        world.frames(20, {});
+    }
+    EXPECT_EQ(world.residency.counters().loadedPages, 1u);
+    EXPECT_EQ(world.residency.hostUsedBytes(), reserved + decodedBytes(ooc::Page{}) + 120);
+    EXPECT_EQ(world.requests.sentCount(), 1u);
+}
+
+TEST(Residency, WhatAFrameWantsStaysAndMakesNoRoomForMore) {
+    const Tree tree;
+    World world({{kPlenty, 20, 0}, {}});
+    for (int i = 0; i < 8; ++i) {
+        world.frames(1, {&tree.root(), &tree.child(0), &tree.child(1)});
+        EXPECT_EQ(world.residency.demandBytes(), 30u);
+    }
+    EXPECT_TRUE(world.isResident(tree.root()) && world.isResident(tree.child(0)));
+    EXPECT_EQ(world.requests.counters().sent, 2u);  // the third would find no room: not even read
+    EXPECT_THAT(world.gpu.dropped, IsEmpty());
+    EXPECT_THAT(world.residency.faults(), IsEmpty());
+}
+
+TEST(Residency, WhatWasUsedInTheLastTwoFramesIsNotEvictedForSomethingElse) {
+    const Tree tree;
+    World world({{kPlenty, 10, 0}, {}});
+    world.frames(4, {&tree.child(0)});  // used in frames 2, 3 and 4
+    ASSERT_TRUE(world.isResident(tree.child(0)));
+    world.frames(2, {&tree.child(1)});  // frames 5 and 6: refused
+    EXPECT_EQ(world.requests.counters().sent, 1u);
+    world.frames(1, {&tree.child(1)});  // frame 7: the other was used before frame 5
+    EXPECT_EQ(world.requests.counters().sent, 2u);
+    EXPECT_TRUE(world.isResident(tree.child(0)));
+    world.frames(1, {&tree.child(1)});
+    EXPECT_TRUE(world.isResident(tree.child(1)));
+    EXPECT_THAT(world.gpu.dropped, ElementsAre(pageOf(tree.child(0))));
+}
+
+TEST(Residency, AChildGoesBeforeItsParentAndWhatIsKeptGoesLast) {
+    const Tree tree;
+    World world({{kPlenty, 50, 0}, {}});
+    world.frames(2, {&tree.root(), &tree.child(0), &tree.child(1), &tree.child(2)});
+    world.frames(2, {&tree.child(3)});  // used later than all the others
+    for (int i = 0; i < 10; ++i) {
+        world.begin();
+        world.residency.keep(pageOf(tree.child(1)));
+        world.residency.keep(pageOf(tree.grandchild(7, 7)));  // not there: no harm
+        for (uint32_t j = 0; j < 5 && i > 4; ++j) world.want(tree.grandchild(0, j));
+        world.end();
+    }
+    EXPECT_THAT(world.gpu.dropped,
+                ElementsAre(pageOf(tree.child(2)), pageOf(tree.child(0)), pageOf(tree.root()),
+                            pageOf(tree.child(3)), pageOf(tree.child(1))));
+}
+
+TEST(Residency, ABudgetOfOnePageKeepsTheRootAndRefusesItsChildren) {
+    const Tree tree;
+    World world({{kPlenty, 10, 0}, {}});
+    world.frames(2, {&tree.root()});
+    for (int i = 0; i < 20; ++i) {
+        world.frames(1, {&tree.root(), &tree.child(0), &tree.child(7)});
+        ASSERT_TRUE(world.isResident(tree.root()));
+    }
+    EXPECT_EQ(world.loads.reads.size(), 1u);
+    EXPECT_EQ(world.residency.missingPages(), 2u);
+    EXPECT_FALSE(world.requests.waitForArrival());  // and who waits is told so
+}
+
+TEST(Residency, APageLargerThanABudgetFailsWithAClearFaultAndBlocksNobody) {
+    Tree tree;
+    tree.records[1].vertexCount = 51;  // child 0
+    tree.records[2].pageBytes = 5000;  // child 1
+    World world({{4000, 50, 0}, {}});
+    world.begin();
+    EXPECT_EQ(world.want(tree.child(0), 9), PageState::Failed);
+    EXPECT_EQ(world.want(tree.child(1), 8), PageState::Failed);
+    EXPECT_EQ(world.want(tree.child(2), 1), PageState::Absent);
+    world.prefetch(tree.child(0));
+    world.end();
+    world.frames(3, {&tree.child(0), &tree.child(1), &tree.child(2)});
+    EXPECT_TRUE(world.isResident(tree.child(2)));
+    EXPECT_EQ(world.loads.reads.size(), 1u);
+    EXPECT_EQ(world.residency.missingPages(), 0u);
+    ASSERT_EQ(world.residency.faults().size(), 2u);
+    EXPECT_EQ(world.residency.faults()[0].what,
+              "page takes 51 bytes of GPU memory, more than the whole budget of 50");
+    EXPECT_THAT(world.residency.faults()[1].what, HasSubstr("bytes of host memory"));
+}
+
+TEST(Residency, APageThatProvesLargerThanABudgetFailsToo) {
+    const Tree tree;
+    World gpu({{kPlenty, 50, 0}, {}});
+    gpu.loads.longerBy[tree.child(0).id.value] = 41;
+    gpu.frames(4, {&tree.child(0), &tree.child(1)});
+    EXPECT_EQ(gpu.residency.state(pageOf(tree.child(0))), PageState::Failed);
+    EXPECT_TRUE(gpu.isResident(tree.child(1)));
+
+    World host({{4000, 50000, 0}, {}});
+    host.loads.longerBy[tree.child(0).id.value] = 1000;
+    host.frames(6, {&tree.child(0), &tree.child(1)});
+    EXPECT_EQ(host.residency.state(pageOf(tree.child(0))), PageState::Failed);
+    EXPECT_TRUE(host.isResident(tree.child(1)));
+    EXPECT_LE(host.requests.counters().sent, 2u);  // read once
+}
+
+TEST(Residency, DropsMorePagesWhileGapsAreTooShort) {
+    const Tree tree;
+    World world({{kPlenty, 100, 0}, {}});
+    world.frames(2, {&tree.child(0), &tree.child(1), &tree.child(2), &tree.child(3)});
+    world.frames(3, {&tree.child(0)});
+    world.gpu.noRoom = 2;
+    world.frames(2, {&tree.child(0), &tree.child(4)});
+    EXPECT_TRUE(world.isResident(tree.child(4)));
+    EXPECT_THAT(world.gpu.dropped, ElementsAre(pageOf(tree.child(3)), pageOf(tree.child(2))));
+}
+
+TEST(Residency, GapsThatStayTooShortLeaveWhatIsInUseAloneAndFailWhatNothingIsLeftToDropFor) {
+    const Tree tree;
+    World world({{kPlenty, 100, 0}, {}});
+    world.frames(2, {&tree.root()});
+    world.gpu.noRoom = -1;
+    world.frames(5, {&tree.root(), &tree.child(0)});
+    EXPECT_TRUE(world.isResident(tree.root()));
+    EXPECT_EQ(world.residency.state(pageOf(tree.child(0))), PageState::Absent);
+    world.frames(5, {&tree.child(0)});
+    EXPECT_FALSE(world.isResident(tree.root()));
+    EXPECT_EQ(world.residency.state(pageOf(tree.child(0))), PageState::Failed);
 }
 
 TEST(Residency, APageThatCannotBeDrawnIsAFault) {
-    Fixture f;
-    Residency residency({.hostBytes = 0, .gpuBytes = 1000}, f.pages, f.gpu);
-    residency.beginFrame(1);
-    EXPECT_EQ(residency.want(f.request(1, 501)), PageState::Failed);
-    EXPECT_EQ(residency.faults().size(), 1u);
+    const Tree tree;
+    World world({{kPlenty, kPlenty, 15}, {}});
+    world.gpu.refused = {pageOf(tree.child(0))};
+    world.frames(2, {&tree.child(0), &tree.child(1)});
+    EXPECT_EQ(world.residency.state(pageOf(tree.child(0))), PageState::Failed);
+    EXPECT_TRUE(world.isResident(tree.child(1)));  // what is refused takes nothing of the bound
+    ASSERT_EQ(world.residency.faults().size(), 1u);
+    EXPECT_THAT(world.residency.faults()[0].what, HasSubstr("vertices"));
 }
 
-TEST(Residency, NeverExceedsItsBudgetsAndRepeatsItself) {
-    const auto play = [](std::vector<uint64_t>& history) {
-        std::mt19937_64 random(11);
-        Fixture f;
-        Residency residency({.hostBytes = 20000, .gpuBytes = 400}, f.pages, f.gpu);
-        for (uint64_t frame = 1; frame <= 400; ++frame) {
-            residency.beginFrame(frame);
-            uint64_t wantedBytes = 0;
-            for (int i = 0; i < 12; ++i) {
-                const uint64_t node = 1 + random() % 80;
-                const auto vertices = static_cast<uint32_t>(5 + node % 90);
-                const PageState state = residency.want(f.request(node, vertices));
-                if (state == PageState::Resident) wantedBytes += vertices;
-                ASSERT_LE(f.gpu.usedBytes(), 400u);
-                ASSERT_EQ(f.gpu.usedBytes(), residency.gpuUsedBytes());
-                ASSERT_LE(residency.hostUsedBytes(), 20000u);
-                history.push_back(static_cast<uint64_t>(state));
-            }
-            for (const auto& [id, bytes] : f.gpu.resident) history.push_back(id.node.value);
-        }
-        ASSERT_GT(residency.counters().evictedPages, 100u);
-    };
-    std::vector<uint64_t> first, second;
-    play(first);
-    play(second);
-    EXPECT_EQ(first, second);
+TEST(Residency, UploadsTheBestFirstWithinTheFramesBoundButTheFirstAlwaysGoes) {
+    Tree tree;
+    tree.records[3].vertexCount = 100;  // child 2: alone more than the bound
+    World world({{kPlenty, kPlenty, 25}, {}});
+    const std::vector<const ooc::NodeRecord*> wanted{&tree.child(5), &tree.child(0), &tree.child(2),
+                                                     &tree.child(1)};
+    world.frames(1, wanted);
+    world.frames(1, wanted);
+    EXPECT_THAT(world.gpu.uploaded, ElementsAre(pageOf(tree.child(5)), pageOf(tree.child(0))));
+    world.frames(1, wanted);
+    EXPECT_THAT(world.gpu.uploaded.back(), pageOf(tree.child(2)));
+    EXPECT_EQ(world.gpu.uploaded.size(), 3u);  // 1 is smaller, but waits its turn
+    world.frames(1, wanted);
+    EXPECT_EQ(world.gpu.uploaded.size(), 4u);
 }
 
-TEST(IndexCache, ReadsABlockOnceAndListsABrokenOneOnce) {
-    ScriptedPages pages;
-    IndexCache index(pages);
-    EXPECT_NE(index.block(0), nullptr);
-    EXPECT_EQ(index.block(0), index.block(0));
-    EXPECT_EQ(pages.blockLoads, 1);
-    EXPECT_EQ(index.block(13), nullptr);
-    EXPECT_EQ(index.block(13), nullptr);
-    EXPECT_EQ(pages.blockLoads, 2);
-    ASSERT_EQ(index.faults().size(), 1u);
-    EXPECT_EQ(index.faults().front().block, 13u);
+TEST(Residency, WhoWaitsAnywayUploadsWithoutTheBound) {
+    const Tree tree;
+    World world({{kPlenty, kPlenty, 5}, {}});
+    world.frames(1, {&tree.root(), &tree.child(0), &tree.child(1)});
+    world.take();
+    world.residency.uploadArrived();
+    EXPECT_EQ(world.gpu.uploaded.size(), 3u);
+}
+
+TEST(Residency, DemandCountsEachWantedPageOnceAFrameAndNoStandIns) {
+    Tree tree;
+    tree.records[2].vertexCount = 33;  // child 1
+    World world;
+    world.frames(2, {&tree.root(), &tree.child(0)});
+    world.begin();
+    world.want(tree.root(), 1, true);
+    world.want(tree.child(0));
+    world.want(tree.child(0));
+    world.want(tree.child(1));  // absent: foretold from its record
+    world.want(tree.child(2), 1, true);
+    world.residency.keep(pageOf(tree.root()));
+    world.prefetch(tree.child(3));
+    EXPECT_EQ(world.residency.demandBytes(), 43u);
+    world.want(tree.root());  // both a stand-in and of the cut
+    EXPECT_EQ(world.residency.demandBytes(), 53u);
+    EXPECT_EQ(world.residency.missingPages(), 2u);
+    world.end();
+    world.begin();
+    EXPECT_EQ(world.residency.demandBytes(), 0u);
+}
+
+TEST(Residency, APageStillInHostMemoryIsUploadedAgainWithoutReadingItElseReadAgainAndCounted) {
+    const Tree tree({.gapBytes = 1 << 20});
+    const uint64_t host = 3 * (100 + decodedBytes(tree.root()));
+    World world({{host, 10, 0}, {}});
+    world.frames(4, {&tree.child(0)});
+    world.frames(5, {&tree.child(1)});
+    EXPECT_TRUE(world.isResident(tree.child(1)));
+    world.frames(5, {&tree.child(0)});
+    EXPECT_TRUE(world.isResident(tree.child(0)));
+    EXPECT_EQ(world.residency.counters().uploadedPages, 3u);
+    EXPECT_EQ(world.residency.counters().reloadedPages, 0u);
+    for (uint32_t i = 2; i < 8; ++i) world.frames(5, {&tree.child(i)});
+    world.frames(5, {&tree.child(0)});
+    EXPECT_TRUE(world.isResident(tree.child(0)));
+    EXPECT_EQ(world.residency.counters().reloadedPages, 1u);
+    EXPECT_EQ(world.residency.counters().bytesReloaded, 100u);
+}
+
+TEST(Residency, DroppingAllEmptiesGpuMemoryEvenOfWhatIsPinned) {
+    const Tree tree;
+    World world;
+    world.frames(3, {&tree.root(), &tree.child(0)});
+    world.residency.dropAll();
+    EXPECT_EQ(world.gpu.usedBytes(), 0u);
+    EXPECT_EQ(world.residency.gpuUsedBytes(), 0u);
+    world.frames(2, {&tree.root()});
+    EXPECT_TRUE(world.isResident(tree.root()));
+    EXPECT_EQ(world.residency.counters().loadedPages, 2u);
 }
 
 }  // namespace
