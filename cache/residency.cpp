@@ -135,12 +135,12 @@ bool Residency::uploadOne(PageId id, const ooc::Page& page) {
         return true;
     }
     if (!gpuLru_.makeRoom(sizeBytes, evicted, before)) return false;
-    dropFromGpu(evicted);
-    GpuPages::Upload done = gpu_.upload(id, page);
-    while (done == GpuPages::Upload::NoRoom && gpuLru_.evictOldest(evicted, before)) {
+    GpuPages::Upload done = GpuPages::Upload::NoRoom;
+    do {
+        counters_.evictedPages += evicted.size();
         dropFromGpu(evicted);
         done = gpu_.upload(id, page);
-    }
+    } while (done == GpuPages::Upload::NoRoom && gpuLru_.evictOldest(evicted, before));
     if (done == GpuPages::Upload::NoRoom) {
         if (gpuLru_.pageCount() > 0) return false;
         fail(id, tooLarge(sizeBytes, "GPU", gpuLru_.budgetBytes()));  // gaps are shorter than that
@@ -283,7 +283,6 @@ void Residency::dropFromGpu(std::vector<PageId>& evicted) {
         gpu_.drop(page);
         if (!decoded_.contains(page)) prefetched_.erase(page);
     }
-    counters_.evictedPages += evicted.size();
     evicted.clear();
 }
 

@@ -48,7 +48,7 @@ public:
         uint64_t loadedPages = 0;
         uint64_t bytesRead = 0;  // encoded, of what arrived, without gaps of joined reads
         uint64_t uploadedPages = 0, bytesUploaded = 0;
-        uint64_t evictedPages = 0;                      // from GPU memory
+        uint64_t evictedPages = 0;                      // from GPU memory, to make room
         uint64_t reloadedPages = 0, bytesReloaded = 0;  // read although read before
         uint64_t failedPages = 0;
         uint64_t prefetchedBytes = 0;      // encoded, arrived before any frame wanted them

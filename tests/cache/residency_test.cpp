@@ -228,6 +228,7 @@ TEST(Residency, DropsMorePagesWhileGapsAreTooShort) {
     world.frames(2, {&tree.child(0), &tree.child(4)});
     EXPECT_TRUE(world.isResident(tree.child(4)));
     EXPECT_THAT(world.gpu.dropped, ElementsAre(pageOf(tree.child(3)), pageOf(tree.child(2))));
+    EXPECT_EQ(world.residency.counters().evictedPages, 2u);
 }
 
 TEST(Residency, GapsThatStayTooShortLeaveWhatIsInUseAloneAndFailWhatNothingIsLeftToDropFor) {
@@ -326,6 +327,7 @@ TEST(Residency, DroppingAllEmptiesGpuMemoryEvenOfWhatIsPinned) {
     world.residency.dropAll();
     EXPECT_EQ(world.gpu.usedBytes(), 0u);
     EXPECT_EQ(world.residency.gpuUsedBytes(), 0u);
+    EXPECT_EQ(world.residency.counters().evictedPages, 0u);  // not to make room
     world.frames(2, {&tree.root()});
     EXPECT_TRUE(world.isResident(tree.root()));
     EXPECT_EQ(world.residency.counters().loadedPages, 2u);
