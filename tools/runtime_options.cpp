@@ -49,7 +49,7 @@ void addRuntimeOptions(CLI::App& command, RuntimeOptions& options) {
         ->capture_default_str();
     command
         .add_option("--host-budget", options.hostBudget,
-                    "Bytes for the index and pages in host memory")
+                    "Bytes for the index and pages in host memory (4MiB or more)")
         ->capture_default_str();
     command
         .add_option("--gpu-budget", options.gpuBudget, "Bytes for uploaded pages (1MiB or more)")

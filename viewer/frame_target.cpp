@@ -127,6 +127,12 @@ void FrameTarget::beginTranslucent() {
     glDepthMask(GL_FALSE);
 }
 
+void FrameTarget::readDepths(std::vector<float>& depths) const {
+    depths.resize(static_cast<size_t>(widthPx_) * static_cast<size_t>(heightPx_));
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, widthPx_, heightPx_, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
+}
+
 Picture FrameTarget::read(double nearModelUnits) const {
     Picture picture;
     picture.widthPx = widthPx_;

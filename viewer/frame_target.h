@@ -5,6 +5,8 @@
 #include "viewer/gl_names.h"
 #include "viewer/picture.h"
 
+#include <vector>
+
 namespace pagoda::viewer {
 
 class FrameTarget {
@@ -19,6 +21,9 @@ public:
     void beginTranslucent();
     // Waits for the GPU and reads everything but `nodes`. Depths are near / value along the view.
     [[nodiscard]] Picture read(double nearModelUnits) const;
+
+    // The depths alone, reversed as they are stored, rows from bottom to top. Waits for the GPU.
+    void readDepths(std::vector<float>& depths) const;
 
     [[nodiscard]] int widthPx() const noexcept { return widthPx_; }
     [[nodiscard]] int heightPx() const noexcept { return heightPx_; }

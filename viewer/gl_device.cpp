@@ -34,7 +34,8 @@ GlDevice::GlDevice(const ooc::Lattice& lattice, uint64_t gpuBudgetBytes)
     : lattice_(lattice),
       store_(gpuBudgetBytes),
       drawer_(store_),
-      queries_([this] { flush(); }, [this] { restoreState(); }, !isSoftwareRenderer()) {
+      queries_([this] { flush(); }, [this] { restoreState(); }, !isSoftwareRenderer()),
+      depthTests_([this] { flush(); }) {
 }
 
 void GlDevice::setLook(const Background& background, const Vec3f& worldUp) {
@@ -60,6 +61,7 @@ void GlDevice::beginFrame(const hlod::View& view) {
     latticeView_ = makeLatticeView(view, lattice_);
     program_.setView(latticeView_, worldUp_);
     queries_.beginFrame(view, latticeView_, lattice_);
+    depthTests_.beginFrame(view, *target_);
     target_->beginOpaque();
     drawer_.bind(program_, latticeView_);
     drawMs_ += watch.lapMs();
@@ -124,14 +126,14 @@ void GlDevice::drawTranslucent(std::span<const hlod::Node> order, hlod::FrameRec
 }
 
 void GlDevice::endFrame(const hlod::FrameCut& cut, hlod::FrameRecord& record) {
+    record.queryMs = queries_.msThisFrame() + depthTests_.msThisFrame();
     record.drawMs = drawMs_;  // what was drawn while the strategy went on; its caller adds the rest
     finishOpaque(record);
     drawZippers(cut, record);
     drawTranslucent(translucentBackToFront(cut.drawn(), eyeModel_), record);
     glFinish();
     throwOnGlError("drawing a frame");
-    record.queries = queries_.queriesThisFrame();
-    record.queryMs = queries_.msThisFrame();
+    record.queries += queries_.queriesThisFrame();
 }
 
 Picture GlDevice::read() const {

@@ -5,6 +5,7 @@
 
 #include "hlod/view/device.h"
 #include "viewer/box_queries.h"
+#include "viewer/depth_tests.h"
 #include "viewer/frame_target.h"
 #include "viewer/mesh_store.h"
 #include "viewer/node_drawer.h"
@@ -27,7 +28,7 @@ public:
     void beginFrame(const hlod::View& view) override;
     void draw(const hlod::Node& node) override;
     [[nodiscard]] hlod::CountingVisibility* counting() override { return &queries_; }
-    [[nodiscard]] hlod::PyramidVisibility* pyramid() override { return nullptr; }
+    [[nodiscard]] hlod::PyramidVisibility* pyramid() override { return &depthTests_; }
     void endFrame(const hlod::FrameCut& cut, hlod::FrameRecord& record) override;
 
     // For who draws a picture in several batches: draws what was gathered, waits for it, and
@@ -50,6 +51,7 @@ private:
     NodeProgram program_;
     NodeDrawer drawer_;
     BoxQueries queries_;
+    DepthTests depthTests_;
     std::unique_ptr<FrameTarget> target_;
     Background background_;
     Vec3f worldUp_{0, 1, 0};

@@ -134,7 +134,10 @@ void ReferenceDrawer::inBatches(std::span<const hlod::Node> nodes, hlod::FrameRe
                                 const std::function<void(std::span<const hlod::Node>)>& drawBatch,
                                 const std::function<void()>& onBatch) {
     std::vector<hlod::Node> batch;
+    uint64_t batchBytes = 0;
     const auto flush = [&] {
+        record.gpuBytes = std::max(record.gpuBytes, batchBytes);
+        batchBytes = 0;
         drawBatch(batch);
         for (const hlod::Node& node : batch) device_.store().drop(node.page());
         batch.clear();
@@ -159,6 +162,7 @@ void ReferenceDrawer::inBatches(std::span<const hlod::Node> nodes, hlod::FrameRe
             done = device_.store().upload(node.page(), *result.page);
         }
         if (done == Upload::Done) {
+            batchBytes += device_.store().sizeBytes(*result.page);
             record.bytesUploaded += device_.store().sizeBytes(*result.page);
             batch.push_back(node);
         } else {

@@ -10,6 +10,7 @@ namespace pagoda::viewer {
 namespace {
 
 constexpr uint64_t kMinGpuBytes = uint64_t{1} << 20;
+constexpr uint64_t kMinHostBytes = uint64_t{4} << 20;
 
 uint64_t gpuBytes(const RendererOptions& options) {
     return std::max(options.gpuBytes, kMinGpuBytes);
@@ -25,7 +26,7 @@ std::unique_ptr<cache::LoadQueue> makeLoads(const cache::PageSource& source,
 
 cache::Streaming::Options streamingOptions(const RendererOptions& options) {
     cache::Streaming::Options streaming;
-    streaming.hostBytes = options.hostBytes;
+    streaming.hostBytes = std::max(options.hostBytes, kMinHostBytes);
     streaming.gpuBytes = gpuBytes(options);
     streaming.uploadBytesPerFrame = options.uploadBytesPerFrame;
     return streaming;

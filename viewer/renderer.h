@@ -24,11 +24,11 @@ struct RenderOptions {
 
 // How the run time is set up.
 struct RendererOptions {
-    uint64_t hostBytes = uint64_t{256} << 20;
-    uint64_t gpuBytes = uint64_t{1} << 30;  // at least 1 MiB
-    uint64_t uploadBytesPerFrame = 0;       // 0: no bound
+    uint64_t hostBytes = uint64_t{256} << 20;  // at least 4 MiB
+    uint64_t gpuBytes = uint64_t{1} << 30;     // at least 1 MiB
+    uint64_t uploadBytesPerFrame = 0;          // 0: no bound
     uint32_t queryLatencyFrames = 0;
-    cache::DiskProfile disk;        // simulated in front of the real one
+    cache::DiskProfile disk{};      // simulated in front of the real one
     cache::Clock* clock = nullptr;  // outlives the renderer; null: the wall's
     size_t loaderThreads = 2;
 };

@@ -12,9 +12,32 @@ constexpr uint32_t kNoParent = UINT32_MAX;
 
 }  // namespace
 
+void PyramidAnswers::beginFrame(PyramidVisibility& pyramid, FrameRecord& record) {
+    pyramid_ = &pyramid;
+    record_ = &record;
+    boxes_.clear();
+    isBuilt_ = false;
+}
+
+QueryTicket PyramidAnswers::query(const QueryShape& shape) {
+    boxes_.push_back(std::get<Box3d>(shape));
+    ++record_->queries;
+    return {boxes_.size() - 1};
+}
+
+uint64_t PyramidAnswers::wait(QueryTicket ticket) {
+    if (!isBuilt_) pyramid_->build();
+    isBuilt_ = true;
+    return pyramid_->visiblePixels(boxes_[ticket.value]);
+}
+
 void CoherentStrategy::traverse(FrameContext& frame) {
     frame_ = &frame;
     counting_ = frame.sink.counting();
+    if (rules_.usesPyramid && frame.sink.pyramid() != nullptr) {
+        pyramidAnswers_.beginFrame(*frame.sink.pyramid(), frame.record);
+        counting_ = &pyramidAnswers_;
+    }
     ++frameNumber_;
     visits_.clear();
     const auto root = frame.tree.root();
@@ -270,24 +293,34 @@ bool CoherentStrategy::drawStandIn(uint32_t index) {
     return true;
 }
 
+namespace {
+
+std::unique_ptr<Strategy> make(CoherentRules rules, const StrategyOptions& options) {
+    rules.biasS = options.biasS;
+    rules.biasT = options.biasT;
+    return std::make_unique<CoherentStrategy>(rules);
+}
+
+}  // namespace
+
 std::unique_ptr<Strategy> makeBoolStrategy(const StrategyOptions& options) {
-    return std::make_unique<CoherentStrategy>(CoherentRules{CoherentRules::Predict::Coherent, false,
-                                                            false, options.biasS, options.biasT});
+    return make({.doesWeighError = false}, options);
 }
 
 std::unique_ptr<Strategy> makeSwStrategy(const StrategyOptions& options) {
-    return std::make_unique<CoherentStrategy>(
-        CoherentRules{CoherentRules::Predict::Never, true, true, options.biasS, options.biasT});
+    return make({.predict = CoherentRules::Predict::Never, .doesWaitAtOnce = true}, options);
 }
 
 std::unique_ptr<Strategy> makeSimpStrategy(const StrategyOptions& options) {
-    return std::make_unique<CoherentStrategy>(
-        CoherentRules{CoherentRules::Predict::InOrder, true, false, options.biasS, options.biasT});
+    return make({.predict = CoherentRules::Predict::InOrder}, options);
 }
 
 std::unique_ptr<Strategy> makeCohStrategy(const StrategyOptions& options) {
-    return std::make_unique<CoherentStrategy>(
-        CoherentRules{CoherentRules::Predict::Coherent, true, false, options.biasS, options.biasT});
+    return make({}, options);
+}
+
+std::unique_ptr<Strategy> makeHzbStrategy(const StrategyOptions& options) {
+    return make({.usesPyramid = true}, options);
 }
 
 }  // namespace pagoda::hlod

@@ -26,7 +26,24 @@ struct CoherentRules {
     Predict predict = Predict::Coherent;
     bool doesWeighError = true;  // VMSSE; else SSE alone
     bool doesWaitAtOnce = false;
+    bool usesPyramid = false;  // answers from depths drawn before the first wait, not from queries
     double biasS = 0.5, biasT = 0.5;
+};
+
+// Answers from a depth pyramid, which is built when the first one is waited for: every box of the
+// frame is tested against what was drawn by then.
+class PyramidAnswers final : public CountingVisibility {
+public:
+    void beginFrame(PyramidVisibility& pyramid, FrameRecord& record);
+    [[nodiscard]] QueryTicket query(const QueryShape& shape) override;
+    [[nodiscard]] std::optional<uint64_t> poll(QueryTicket ticket) override { return wait(ticket); }
+    [[nodiscard]] uint64_t wait(QueryTicket ticket) override;
+
+private:
+    PyramidVisibility* pyramid_ = nullptr;
+    FrameRecord* record_ = nullptr;
+    std::vector<Box3d> boxes_;
+    bool isBuilt_ = false;
 };
 
 class CoherentStrategy final : public Strategy {
@@ -83,6 +100,7 @@ private:
     double lastBias_ = 1.0;     // of the last answer in order
     FrameContext* frame_ = nullptr;
     CountingVisibility* counting_ = nullptr;
+    PyramidAnswers pyramidAnswers_;
     std::vector<Visit> visits_;
     std::vector<uint32_t> queue_;   // a heap of visits, nearest first
     std::deque<uint32_t> pending_;  // visits that were asked about, oldest first

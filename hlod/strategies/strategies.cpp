@@ -11,6 +11,8 @@ constexpr std::array kStrategies = {
     StrategyRow{"sw", "hierarchical stop-and-wait, VMSSE: the ideal set", &makeSwStrategy},
     StrategyRow{"simp", "VMSSE, predicted from the last answer in order", &makeSimpStrategy},
     StrategyRow{"coh", "coherent HLOD culling: refine, stop or delay", &makeCohStrategy},
+    StrategyRow{"hzb", "as coh, boxes tested against a depth pyramid, no queries",
+                &makeHzbStrategy},
 };
 
 }  // namespace

@@ -32,5 +32,6 @@ struct StrategyRow {
 [[nodiscard]] std::unique_ptr<Strategy> makeSwStrategy(const StrategyOptions& options);
 [[nodiscard]] std::unique_ptr<Strategy> makeSimpStrategy(const StrategyOptions& options);
 [[nodiscard]] std::unique_ptr<Strategy> makeCohStrategy(const StrategyOptions& options);
+[[nodiscard]] std::unique_ptr<Strategy> makeHzbStrategy(const StrategyOptions& options);
 
 }  // namespace pagoda::hlod

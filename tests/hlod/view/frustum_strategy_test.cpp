@@ -1,6 +1,7 @@
 // The frustum strategy, its cut and its faults, on small trees in memory.
 #include "hlod/strategies/strategies.h"
 #include "hlod/view/frame_cut.h"
+#include "tests/viewer/inline_loads.h"
 #include "tests/viewer/memory_scene.h"
 
 #include <gtest/gtest.h>
@@ -12,21 +13,31 @@ namespace {
 
 using test::MemoryScene;
 
-// Says what is drawn; pages are there unless the scene fails them.
+// Says what is drawn; pages are there unless the scene fails them, or the test keeps them away.
 class RecordingSink final : public FrameSink {
 public:
     explicit RecordingSink(const MemoryScene& scene) : scene_(scene) {}
-    cache::PageState want(const Node& node, double) override {
-        ++wanted;
-        if (wanted > roomFor) return cache::PageState::NoRoom;
-        return scene_.failing.contains(node.record->id) ? cache::PageState::Failed
-                                                        : cache::PageState::Resident;
+    cache::PageState state(const Node& node) const override {
+        if (scene_.failing.contains(node.record->id)) return cache::PageState::Failed;
+        return absent.contains(node.record->id) ? cache::PageState::Absent
+                                                : cache::PageState::Resident;
     }
-    void refine(const Node& node) override { cut.refine(node); }
-    void draw(const Node& node) override { cut.draw(node); }
-    CountingVisibility* visibility() override { return nullptr; }
+    cache::PageState want(const Node& node, double, Use use) override {
+        if (use == Use::Cut) wanted.insert(node.record->id);
+        return state(node);
+    }
+    void keep(const Node&) override {}
+    void refine(const Node& node) override { refined.insert(node.record->id); }
+    void draw(const Node& node, Use use) override {
+        cut.draw(node);
+        standIns += use == Use::StandIn;
+    }
+    void hide(const Node&) override { ADD_FAILURE() << "nothing was tested"; }
+    CountingVisibility* counting() override { return nullptr; }
+    PyramidVisibility* pyramid() override { return nullptr; }
     FrameCut cut;
-    int wanted = 0, roomFor = 1 << 30;
+    std::set<ooc::NodeId> absent, wanted, refined;
+    int standIns = 0;
 
 private:
     const MemoryScene& scene_;
@@ -35,13 +46,30 @@ private:
 struct Frame {
     explicit Frame(MemoryScene& made, const Camera& camera)
         : scene(made),
-          index(scene),
+          loads(scene),
+          requests(loads, clock, {}),
+          index(scene.lattice, scene, requests, uint64_t{1} << 30),
           tree(scene.lattice, index),
-          view(camera, tree.boxModel(tree.root())),
-          sink(scene) {}
-    bool traverse(double tauPx) {
-        FrameContext context{view, tree, tauPx, sink, record};
-        return makeStrategy("frustum")->traverse(context);
+          view(camera, scene.lattice.toModel(scene.block.nodes[0].box)),
+          sink(scene) {
+        index.beginFrame(1);
+        requests.beginFrame();
+        static_cast<void>(tree.root());
+        load();
+    }
+    void load() {
+        requests.send([&](const cache::Request& request) { return index.admit(request); });
+        std::vector<cache::RequestQueue::Arrival> arrivals;
+        requests.collect(arrivals);
+        for (cache::RequestQueue::Arrival& arrival : arrivals) index.arrive(arrival);
+    }
+    void traverse(double tauPx) {
+        sink.cut.clear();
+        sink.refined.clear();
+        sink.wanted.clear();
+        sink.standIns = 0;
+        FrameContext context{view, tree, tauPx, 1, sink, record};
+        strategy->traverse(context);
     }
     [[nodiscard]] std::set<ooc::NodeId> drawn() const {
         std::set<ooc::NodeId> ids;
@@ -49,11 +77,15 @@ struct Frame {
         return ids;
     }
     MemoryScene& scene;
+    test::InlineLoads loads;
+    cache::ManualClock clock;
+    cache::RequestQueue requests;
     cache::IndexCache index;
     NodeTree tree;
     View view;
     RecordingSink sink;
     FrameRecord record;
+    std::unique_ptr<Strategy> strategy = makeStrategy("frustum");
 };
 
 MemoryScene sphereScene() {
@@ -84,7 +116,7 @@ TEST(FrustumStrategy, EveryLeafInTheFrustumIsDrawnOrStoodForByExactlyOneNode) {
     for (int i = 0; i < 60; ++i) {
         Frame frame(scene, lookFrom({place(random), place(random), place(random)}));
         const double tauPx = i % 5 == 0 ? 0.0 : tau(random);
-        ASSERT_TRUE(frame.traverse(tauPx));
+        frame.traverse(tauPx);
         const auto drawn = frame.drawn();
         for (const ooc::NodeRecord& record : scene.block.nodes) {
             const Box3d box = scene.lattice.toModel(record.box);
@@ -93,7 +125,7 @@ TEST(FrustumStrategy, EveryLeafInTheFrustumIsDrawnOrStoodForByExactlyOneNode) {
                 EXPECT_LE(ssePx, tauPx);
                 EXPECT_GT(tauPx, 0.0);
             }
-            if (frame.sink.cut.refined({0, record.id}) && !record.isLeaf()) {
+            if (frame.sink.refined.contains(record.id) && !record.isLeaf()) {
                 EXPECT_TRUE(ssePx > tauPx || tauPx == 0.0);
             }
             if (!record.isLeaf()) continue;
@@ -114,10 +146,10 @@ TEST(FrustumStrategy, AParentStandsInForAChildWhosePageFails) {
                                    [](const ooc::NodeRecord& record) { return record.isLeaf(); });
     scene.failing.insert(leaf->id);
     Frame frame(scene, lookFrom({0, 0, 30}));
-    ASSERT_TRUE(frame.traverse(0.0));
+    frame.traverse(0.0);
     EXPECT_TRUE(frame.drawn().contains(leaf->id.parent()));
-    EXPECT_EQ(frame.record.standIns, 1u);
-    EXPECT_FALSE(frame.sink.cut.refined({0, leaf->id.parent()}));
+    EXPECT_EQ(frame.sink.standIns, 1);
+    EXPECT_FALSE(frame.sink.refined.contains(leaf->id.parent()));
     for (const ooc::NodeRecord& record : scene.block.nodes) {
         if (!record.isLeaf()) continue;
         const bool isStoodFor = isBelow(record.id, leaf->id.parent());
@@ -132,7 +164,7 @@ TEST(FrustumStrategy, TheNearestAncestorThatCanBeReadStandsIn) {
         [](const ooc::NodeRecord& a, const ooc::NodeRecord& b) { return a.id < b.id; });
     scene.failing = {deepest.id, deepest.id.parent()};
     Frame frame(scene, lookFrom({0, 0, 30}));
-    ASSERT_TRUE(frame.traverse(0.0));
+    frame.traverse(0.0);
     EXPECT_TRUE(frame.drawn().contains(deepest.id.parent().parent()));
 }
 
@@ -140,24 +172,50 @@ TEST(FrustumStrategy, DrawsNothingWhenEvenTheRootFails) {
     MemoryScene scene = sphereScene();
     for (const ooc::NodeRecord& record : scene.block.nodes) scene.failing.insert(record.id);
     Frame frame(scene, lookFrom({0, 0, 30}));
-    ASSERT_TRUE(frame.traverse(1.0));
+    frame.traverse(1.0);
     EXPECT_TRUE(frame.drawn().empty());
 }
 
-TEST(FrustumStrategy, AsksForACoarserCutWhenThereIsNoRoom) {
+TEST(FrustumStrategy, AsksForTheWholePathWhileAnAncestorStandsIn) {
     MemoryScene scene = sphereScene();
     Frame frame(scene, lookFrom({0, 0, 30}));
-    frame.sink.roomFor = 3;
-    EXPECT_FALSE(frame.traverse(0.0));
+    for (const ooc::NodeRecord& record : scene.block.nodes) {
+        if (record.id != ooc::NodeId::root()) frame.sink.absent.insert(record.id);
+    }
+    frame.traverse(0.0);
+    EXPECT_EQ(frame.drawn(), std::set{ooc::NodeId::root()});
+    EXPECT_EQ(frame.sink.standIns, 1);
+    for (const ooc::NodeRecord& record : scene.block.nodes) {
+        EXPECT_EQ(frame.sink.wanted.contains(record.id), record.isLeaf());
+    }
+}
+
+TEST(FrustumStrategy, WhatWasRefinedStaysAndAMissingChildHasAStandInBesideTheOthers) {
+    MemoryScene scene = sphereScene();
+    Frame frame(scene, lookFrom({0, 0, 30}));
+    frame.traverse(0.0);
+    const std::set<ooc::NodeId> before = frame.drawn();
+    const ooc::NodeId gone = *before.rbegin();
+    frame.sink.absent.insert(gone);
+    frame.traverse(0.0);
+    std::set<ooc::NodeId> expected = before;
+    expected.erase(gone);
+    expected.insert(gone.parent());
+    EXPECT_EQ(frame.drawn(), expected);
+    EXPECT_EQ(frame.sink.standIns, 1);
+    frame.strategy->forget();
+    frame.traverse(0.0);  // without that memory the parent stands in alone
+    EXPECT_FALSE(frame.drawn().contains(gone.parent().child(0)));
+    EXPECT_TRUE(frame.drawn().contains(gone.parent()));
 }
 
 TEST(NodeTree, ABrokenBlockStopsRefinementThere) {
     MemoryScene scene = sphereScene();
     scene.block.nodes[0].childBlock = 7;
     Frame frame(scene, lookFrom({0, 0, 30}));
-    ASSERT_TRUE(frame.traverse(0.0));
+    frame.traverse(0.0);
     EXPECT_EQ(frame.drawn(), std::set{ooc::NodeId::root()});
-    EXPECT_EQ(frame.record.standIns, 1u);
+    EXPECT_EQ(frame.sink.standIns, 1);
     ASSERT_EQ(frame.index.faults().size(), 1u);
     EXPECT_EQ(frame.index.faults().front().block, 7u);
 }
@@ -167,7 +225,7 @@ TEST(NodeTree, HostileRecordsEndRefinementInsteadOfLeadingInCircles) {
         MemoryScene scene = sphereScene();
         spoil(scene.block.nodes);
         Frame frame(scene, lookFrom({0, 0, 30}));
-        EXPECT_TRUE(frame.traverse(0.0));
+        frame.traverse(0.0);
         EXPECT_FALSE(frame.index.faults().empty());
         return frame.drawn();
     };
@@ -180,11 +238,12 @@ TEST(NodeTree, HostileRecordsEndRefinementInsteadOfLeadingInCircles) {
 }
 
 TEST(FrameCut, ALeafThatIsDrawnCountsAsRefinedAndAStandInDoesNot) {
-    const ooc::NodeRecord leaf{.id = ooc::NodeId::root().child(1)};
-    const ooc::NodeRecord inner{.id = ooc::NodeId::root().child(2), .childMask = 1};
+    const ooc::NodeRecord leaf{.id = ooc::NodeId::root().child(1), .flags = ooc::kNodeHasZippers};
+    const ooc::NodeRecord inner{
+        .id = ooc::NodeId::root().child(2), .childMask = 1, .flags = ooc::kNodeHasZippers};
     FrameCut cut;
-    cut.draw({&leaf, 0});
-    cut.draw({&inner, 0});
+    cut.draw({&leaf, nullptr, 0, 0});
+    cut.draw({&inner, nullptr, 0, 1});
     EXPECT_TRUE(cut.refined({0, leaf.id}));
     EXPECT_FALSE(cut.refined({0, inner.id}));
     EXPECT_FALSE(cut.refined({0, leaf.id.child(0)}));

@@ -1,0 +1,322 @@
+#include "tools/bench/bench.h"
+
+#include "cache/page_source.h"
+#include "hlod/strategies/preload.h"
+#include "hlod/strategies/replay.h"
+#include "ooc/base/progress.h"
+#include "ooc/store/database.h"
+#include "tools/bench/truth.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <unordered_map>
+#include <unordered_set>
+
+namespace pagoda::tools {
+namespace {
+
+// The truth is drawn from a renderer of its own, with room for whatever it wants.
+constexpr uint64_t kTruthHostBytes = uint64_t{1} << 30;
+constexpr uint64_t kTruthGpuBytes = uint64_t{8} << 30;
+
+// Means are summed first.
+void addTimed(BenchRun& run, const hlod::FrameRecord& record) {
+    const auto add = [](double& sum, auto value) { sum += static_cast<double>(value); };
+    add(run.drawnNodes, record.drawnNodes);
+    add(run.drawnTriangles, record.drawnTriangles);
+    add(run.queries, record.queries);
+    add(run.rarn, record.rarnNodes);
+    add(run.delayed, record.delayedNodes);
+    add(run.waits, record.waits);
+    add(run.visitedNodes, record.visitedNodes);
+    add(run.hiddenNodes, record.hiddenNodes);
+    add(run.missingPages, record.missingPages);
+    add(run.effectiveTauPx, record.effectiveTauPx);
+    add(run.stopHidden, record.predictions.stopHidden);
+    add(run.delayHidden, record.predictions.delayHidden);
+    add(run.stallMs, record.simulatedStallMs);
+    run.frameMsSeries.push_back(record.frameMs);
+    run.cpuMsSeries.push_back(record.cpuMs);
+}
+
+void divide(BenchRun& run) {
+    const auto timed = static_cast<double>(std::max<size_t>(run.frameMsSeries.size(), 1));
+    for (double* sum : {&run.drawnNodes, &run.drawnTriangles, &run.queries, &run.rarn, &run.delayed,
+                        &run.waits, &run.visitedNodes, &run.hiddenNodes, &run.missingPages,
+                        &run.effectiveTauPx, &run.stopHidden, &run.delayHidden, &run.stallMs}) {
+        *sum /= timed;
+    }
+    const auto truth = static_cast<double>(std::max<size_t>(run.truthFrames, 1));
+    for (double* sum : {&run.wrongPixels, &run.tiedPixels, &run.overdrawnPixels, &run.coveredPixels,
+                        &run.psnrLuma, &run.psnrCb, &run.psnrCr}) {
+        *sum /= truth;
+    }
+}
+
+struct NodeHash {
+    size_t operator()(ooc::NodeId node) const {
+        return cache::PageIdHash{}(cache::PageId{0, node});
+    }
+};
+using PageBytes = std::unordered_map<ooc::NodeId, uint32_t, NodeHash>;
+
+struct Parts {
+    std::vector<double> traverse, query, draw, stream;
+};
+
+class Contestant {
+public:
+    Contestant(const BenchPlan& plan, const BenchConfiguration& configuration,
+               const std::string& name, const ooc::Database& database,
+               const cache::PageSource& source)
+        : renderer_(database.header().lattice, source, options(plan, configuration)),
+          strategy_(hlod::makeStrategy(name, plan.runtime.strategyOptions())) {
+        run_.strategy = name;
+        run_.pathName = configuration.pathName;
+        run_.tauPx = configuration.tauPx;
+        run_.widthPx = configuration.widthPx;
+        run_.heightPx = configuration.heightPx;
+        run_.queryLatencyFrames = configuration.queryLatencyFrames;
+        run_.frames = configuration.path.frames.size();
+        run_.repeats = plan.repeats;
+    }
+
+    void forget() { strategy_->forget(); }
+
+    void settle(const hlod::Camera& camera, const viewer::RenderOptions& options) {
+        hlod::FrameRecord record = renderer_.render(camera, *strategy_, options);
+        const viewer::Picture picture = renderer_.read(record);
+        run_.unsettledFrames += !record.isSettled;
+        notePeaks(record);
+        for (const std::string& fault : record.faults) addFault(fault);
+        std::vector<bool> isSeen(picture.nodes.size() + 1, false);
+        for (const uint32_t ordinal : picture.nodeOrdinals) isSeen[ordinal] = true;
+        for (size_t i = 0; i < picture.nodes.size(); ++i) {
+            if (isSeen[i + 1]) addExact(picture.nodes[i]);
+        }
+    }
+
+    void endSettled(const PageBytes& pageBytes) {
+        const cache::RequestQueue::Counters& counters =
+            renderer_.runner().streaming().requests().counters();
+        run_.bytesRead = counters.bytesRead - counters.blockBytesRead;
+        run_.pageBytesRead = renderer_.runner().streaming().residency().counters().bytesRead;
+        for (const ooc::NodeId node : exact_) run_.bytesExact += pageBytes.at(node);
+    }
+
+    // Everything down to the cut at tau; what does not fit is missing later, and counted.
+    void preload(const hlod::Camera& camera, const viewer::RenderOptions& options) {
+        hlod::PreloadStrategy all;
+        static_cast<void>(renderer_.render(camera, all, options));
+    }
+
+    hlod::FrameRecord live(const hlod::Camera& camera, const viewer::RenderOptions& options) {
+        hlod::FrameRecord record = renderer_.renderLive(camera, *strategy_, options);
+        notePeaks(record);
+        return record;
+    }
+
+    void compare(hlod::FrameRecord& record, viewer::Renderer& truth, const hlod::Camera& camera,
+                 const viewer::RenderOptions& options, const viewer::Picture& tauPicture) {
+        const viewer::Picture picture = renderer_.read(record);
+        hlod::ReplayStrategy replay(renderer_.runner().cut());
+        viewer::RenderOptions same = options;
+        same.tauPx = record.effectiveTauPx;
+        hlod::FrameRecord truthRecord = truth.render(camera, replay, same);
+        const viewer::Picture truthPicture = truth.read(truthRecord);
+        const WrongPixels wrong = countWrongPixels(picture, truthPicture, [&](ooc::NodeId node) {
+            return replay.overdrawn().contains(cache::PageId{0, node});
+        });
+        const Psnr quality = psnr(picture, tauPicture);
+        run_.wrongPixels += static_cast<double>(wrong.wrong);
+        run_.tiedPixels += static_cast<double>(wrong.tied);
+        run_.overdrawnPixels += static_cast<double>(wrong.overdrawn);
+        run_.coveredPixels += static_cast<double>(record.coveredPixels);
+        run_.truthMissingPages += static_cast<double>(record.missingPages);
+        run_.psnrLumaSeries.push_back(quality.luma);
+        run_.psnrLuma += quality.luma;
+        run_.psnrCb += quality.cb;
+        run_.psnrCr += quality.cr;
+        run_.worstPsnrLuma =
+            run_.truthFrames == 0 ? quality.luma : std::min(run_.worstPsnrLuma, quality.luma);
+        ++run_.truthFrames;
+    }
+
+    void time(const hlod::Camera& camera, const viewer::RenderOptions& options, bool isLast) {
+        const hlod::FrameRecord record = live(camera, options);
+        addTimed(run_, record);
+        parts_.traverse.push_back(record.traverseMs);
+        parts_.query.push_back(record.queryMs);
+        parts_.draw.push_back(record.drawMs);
+        parts_.stream.push_back(record.streamMs);
+        if (isLast) run_.drawnNodesSeries.push_back(static_cast<double>(record.drawnNodes));
+    }
+
+    BenchRun finish() {
+        divide(run_);
+        run_.frameMs = spreadOf(run_.frameMsSeries);
+        run_.cpuMs = spreadOf(run_.cpuMsSeries);
+        run_.traverseMs = spreadOf(parts_.traverse);
+        run_.queryMs = spreadOf(parts_.query);
+        run_.drawMs = spreadOf(parts_.draw);
+        run_.streamMs = spreadOf(parts_.stream);
+        return std::move(run_);
+    }
+
+private:
+    static viewer::RendererOptions options(const BenchPlan& plan,
+                                           const BenchConfiguration& configuration) {
+        viewer::RendererOptions options = plan.runtime.rendererOptions();
+        options.queryLatencyFrames = configuration.queryLatencyFrames;
+        return options;
+    }
+    void addExact(ooc::NodeId node) {
+        while (exact_.insert(node).second && node != ooc::NodeId::root()) node = node.parent();
+    }
+    void notePeaks(const hlod::FrameRecord& record) {
+        run_.gpuBytesPeak = std::max(run_.gpuBytesPeak, record.gpuBytes);
+        run_.hostBytesPeak = std::max(run_.hostBytesPeak, record.hostBytes);
+    }
+    void addFault(const std::string& fault) {
+        if (std::find(run_.faults.begin(), run_.faults.end(), fault) == run_.faults.end()) {
+            run_.faults.push_back(fault);
+        }
+    }
+
+    viewer::Renderer renderer_;
+    std::unique_ptr<hlod::Strategy> strategy_;
+    BenchRun run_;
+    Parts parts_;
+    std::unordered_set<ooc::NodeId, NodeHash> exact_;
+};
+
+PageBytes pageBytesOf(const ooc::Database& database) {
+    PageBytes bytes;
+    ooc::forEachNode(
+        database,
+        [&](const ooc::NodeRecord& node, ooc::NodeRef) {
+            bytes.emplace(node.id, node.pageBytes);
+            return true;
+        },
+        [](uint32_t, const std::string&) {});
+    return bytes;
+}
+
+class Bench {
+public:
+    Bench(const BenchPlan& plan, const BenchConfiguration& configuration, Progress& progress)
+        : plan_(plan),
+          configuration_(configuration),
+          progress_(progress),
+          database_(ooc::Database::open(plan.database)),
+          source_(database_) {
+        options_.tauPx = configuration.tauPx;
+        options_.worldUp = plan.worldUp;
+        for (const std::string& name : plan.strategies) {
+            contestants_.push_back(
+                std::make_unique<Contestant>(plan, configuration, name, database_, source_));
+        }
+    }
+
+    std::vector<BenchRun> run() {
+        const size_t frames = configuration_.path.frames.size();
+        const size_t passes = size_t{plan_.doesSettle} + size_t{plan_.truthEvery > 0} + 1 +
+                              static_cast<size_t>(plan_.repeats);
+        progress_.beginStage(
+            fmt::format("{}, tau {:g}, {}x{}", configuration_.pathName, configuration_.tauPx,
+                        configuration_.widthPx, configuration_.heightPx),
+            frames * passes, "frames");
+        if (plan_.doesSettle) settled();
+        preload();
+        if (plan_.truthEvery > 0) truth();
+        timed();
+        std::vector<BenchRun> runs;
+        for (auto& contestant : contestants_) runs.push_back(contestant->finish());
+        return runs;
+    }
+
+private:
+    hlod::Camera camera(size_t frame) const {
+        hlod::Camera camera = configuration_.path.frames[frame];
+        camera.widthPx = configuration_.widthPx;
+        camera.heightPx = configuration_.heightPx;
+        return camera;
+    }
+    template <typename Visit>
+    void eachFrame(Visit&& visit) {
+        for (auto& contestant : contestants_) contestant->forget();
+        for (size_t i = 0; i < configuration_.path.frames.size(); ++i) {
+            progress_.check();
+            visit(i, camera(i));
+            progress_.advance(1);
+        }
+    }
+
+    void settled() {
+        eachFrame([&](size_t, const hlod::Camera& camera) {
+            for (auto& contestant : contestants_) contestant->settle(camera, options_);
+        });
+        const PageBytes bytes = pageBytesOf(database_);
+        for (auto& contestant : contestants_) contestant->endSettled(bytes);
+    }
+
+    // Culling is compared as if the whole model were there: a child that was never looked at must
+    // not be missing when the camera turns to it.
+    void preload() {
+        eachFrame([&](size_t, const hlod::Camera& camera) {
+            for (auto& contestant : contestants_) contestant->preload(camera, options_);
+        });
+    }
+
+    void truth() {
+        viewer::RendererOptions roomy;
+        roomy.hostBytes = kTruthHostBytes;
+        roomy.gpuBytes = kTruthGpuBytes;
+        viewer::Renderer truth(database_.header().lattice, source_, roomy);
+        const auto frustum = hlod::makeStrategy("frustum");
+        eachFrame([&](size_t i, const hlod::Camera& camera) {
+            std::vector<hlod::FrameRecord> records;
+            for (auto& contestant : contestants_) {
+                records.push_back(contestant->live(camera, options_));
+            }
+            if (i % static_cast<size_t>(plan_.truthEvery) != 0) return;
+            hlod::FrameRecord record = truth.render(camera, *frustum, options_);
+            const viewer::Picture tauPicture = truth.read(record);
+            for (size_t k = 0; k < contestants_.size(); ++k) {
+                contestants_[k]->compare(records[k], truth, camera, options_, tauPicture);
+            }
+        });
+    }
+
+    void timed() {
+        for (int repeat = 0; repeat < plan_.repeats; ++repeat) {
+            eachFrame([&](size_t i, const hlod::Camera& camera) {
+                // Who begins changes from frame to frame: what the one before left in caches is not
+                // always the same one's.
+                for (size_t k = 0; k < contestants_.size(); ++k) {
+                    contestants_[(k + i) % contestants_.size()]->time(camera, options_,
+                                                                      repeat + 1 == plan_.repeats);
+                }
+            });
+        }
+    }
+
+    const BenchPlan& plan_;
+    const BenchConfiguration& configuration_;
+    Progress& progress_;
+    ooc::Database database_;
+    cache::DatabaseSource source_;
+    viewer::RenderOptions options_;
+    std::vector<std::unique_ptr<Contestant>> contestants_;
+};
+
+}  // namespace
+
+std::vector<BenchRun> runBench(const BenchPlan& plan, const BenchConfiguration& configuration,
+                               Progress& progress) {
+    return Bench(plan, configuration, progress).run();
+}
+
+}  // namespace pagoda::tools

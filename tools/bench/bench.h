@@ -1,0 +1,88 @@
+// bench.h: strategies side by side on one database: what each draws, reads and costs along a path,
+// and how far its pictures are from the truth. Strategies take turns at every frame, so that what
+// else the machine does weighs on all alike.
+//
+// Each strategy has a renderer of its own and passes the path three times over:
+//   settled  from cold: every frame waits until nothing is missing. Gives bytes_read, and
+//            bytes_exact from the nodes whose pixels are seen.
+//   truth    live, all resident: pictures against the same cut without culling, and against the
+//            cut at tau (what `bool` draws).
+//   timed    live, all resident, `repeats` times: counters and times. No picture is read.
+#pragma once
+
+#include "hlod/view/camera_path.h"
+#include "tools/bench/statistics.h"
+#include "tools/runtime_options.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace pagoda {
+class Progress;
+}
+
+namespace pagoda::tools {
+
+struct BenchConfiguration {
+    std::string pathName;
+    hlod::CameraPath path;
+    double tauPx = 1;
+    int widthPx = 640, heightPx = 480;
+    uint32_t queryLatencyFrames = 0;
+};
+
+struct BenchPlan {
+    std::string database;
+    std::vector<std::string> strategies;
+    std::vector<BenchConfiguration> configurations;
+    RuntimeOptions runtime;
+    int repeats = 3;
+    int truthEvery = 1;  // frames between those whose pixels are compared; 0: none
+    bool doesSettle = true;
+    Vec3f worldUp{0, 0, 1};
+};
+
+// Means over the frames that were looked at.
+struct BenchRun {
+    std::string strategy, pathName;
+    double tauPx = 1;
+    int widthPx = 0, heightPx = 0;
+    uint32_t queryLatencyFrames = 0;
+    size_t frames = 0;
+    int repeats = 0;
+    // From the timed pass, a frame.
+    double drawnNodes = 0, drawnTriangles = 0, queries = 0, rarn = 0, delayed = 0, waits = 0;
+    double visitedNodes = 0, hiddenNodes = 0, missingPages = 0, effectiveTauPx = 0;
+    double stopHidden = 0, delayHidden = 0, stallMs = 0;
+    Spread frameMs, cpuMs, traverseMs, queryMs, drawMs, streamMs;
+    std::vector<double> frameMsSeries, cpuMsSeries;  // of all repeats, in order
+    std::vector<double> drawnNodesSeries;            // of the last repeat
+    // From the truth pass: totals a frame.
+    size_t truthFrames = 0;
+    double wrongPixels = 0, tiedPixels = 0, overdrawnPixels = 0, coveredPixels = 0;
+    double truthMissingPages = 0;  // wanted and not there: should be 0
+    std::vector<double> psnrLumaSeries;
+    double psnrLuma = 0, psnrCb = 0, psnrCr = 0, worstPsnrLuma = 0;
+    // From the settled pass.
+    uint64_t bytesRead = 0;      // with what joined reads bring along
+    uint64_t pageBytesRead = 0;  // without
+    uint64_t bytesExact = 0;     // pages with a pixel, and their ancestors
+    uint64_t unsettledFrames = 0;
+    uint64_t gpuBytesPeak = 0, hostBytesPeak = 0;
+    std::vector<std::string> faults;
+};
+
+// Runs of one configuration, in the order of plan.strategies.
+[[nodiscard]] std::vector<BenchRun> runBench(const BenchPlan& plan,
+                                             const BenchConfiguration& configuration,
+                                             Progress& progress);
+
+// {"database":, "machine":, "settings":, "runs": [...], "ratios": [...]}; keys are a contract
+// (docs/bench.md).
+[[nodiscard]] std::string benchToJson(const BenchPlan& plan, const std::vector<BenchRun>& runs,
+                                      const std::string& device);
+// One line a run.
+[[nodiscard]] std::string benchToCsv(const std::vector<BenchRun>& runs);
+
+}  // namespace pagoda::tools

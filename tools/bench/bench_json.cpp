@@ -1,0 +1,195 @@
+#include "tools/bench/bench.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <thread>
+
+namespace pagoda::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Rounded to six digits: more is noise, and reports get committed.
+double shown(double value) {
+    return std::stod(fmt::format("{:.6g}", value));
+}
+
+Json toJson(const Spread& spread) {
+    return {{"median", shown(spread.median)},
+            {"p95", shown(spread.p95)},
+            {"p99", shown(spread.p99)},
+            {"max", shown(spread.max)},
+            {"mean", shown(spread.mean)}};
+}
+
+Json toJson(const std::vector<double>& values) {
+    Json list = Json::array();
+    for (const double value : values) list.push_back(shown(value));
+    return list;
+}
+
+Json toJson(const BenchRun& run) {
+    Json json = {
+        {"strategy", run.strategy},
+        {"tau", run.tauPx},
+        {"path", run.pathName},
+        {"width", run.widthPx},
+        {"height", run.heightPx},
+        {"query_latency", run.queryLatencyFrames},
+        {"frames", run.frames},
+        {"repeats", run.repeats},
+        {"drawn_nodes", shown(run.drawnNodes)},
+        {"drawn_triangles", shown(run.drawnTriangles)},
+        {"queries", shown(run.queries)},
+        {"rarn", shown(run.rarn)},
+        {"delayed", shown(run.delayed)},
+        {"waits", shown(run.waits)},
+        {"visited_nodes", shown(run.visitedNodes)},
+        {"hidden_nodes", shown(run.hiddenNodes)},
+        {"stop_hidden", shown(run.stopHidden)},
+        {"delay_hidden", shown(run.delayHidden)},
+        {"missing_pages", shown(run.missingPages)},
+        {"effective_tau", shown(run.effectiveTauPx)},
+        {"simulated_stall_ms", shown(run.stallMs)},
+        {"truth_frames", run.truthFrames},
+        {"wrong_pixels", shown(run.wrongPixels)},
+        {"tied_pixels", shown(run.tiedPixels)},
+        {"rarn_pixels", shown(run.overdrawnPixels)},
+        {"covered_pixels", shown(run.coveredPixels)},
+        {"truth_missing_pages", shown(run.truthMissingPages)},
+        {"psnr_luma", shown(run.psnrLuma)},
+        {"psnr_cb", shown(run.psnrCb)},
+        {"psnr_cr", shown(run.psnrCr)},
+        {"psnr_luma_worst", shown(run.worstPsnrLuma)},
+    };
+    json["frame_ms"] = toJson(run.frameMs);
+    json["frame_ms"]["traverse"] = shown(run.traverseMs.median);
+    json["frame_ms"]["query"] = shown(run.queryMs.median);
+    json["frame_ms"]["draw"] = shown(run.drawMs.median);
+    json["frame_ms"]["upload"] = shown(run.streamMs.median);
+    json["cpu_ms"] = toJson(run.cpuMs);
+    json["bytes_read"] = run.bytesRead;
+    json["page_bytes_read"] = run.pageBytesRead;
+    json["bytes_exact"] = run.bytesExact;
+    json["unsettled_frames"] = run.unsettledFrames;
+    json["gpu_bytes_peak"] = run.gpuBytesPeak;
+    json["host_bytes_peak"] = run.hostBytesPeak;
+    json["faults"] = run.faults;
+    json["series"] = {{"frame_ms", toJson(run.frameMsSeries)},
+                      {"cpu_ms", toJson(run.cpuMsSeries)},
+                      {"drawn_nodes", toJson(run.drawnNodesSeries)},
+                      {"psnr_luma", toJson(run.psnrLumaSeries)}};
+    return json;
+}
+
+bool isSameConfiguration(const BenchRun& a, const BenchRun& b) {
+    return a.pathName == b.pathName && a.tauPx == b.tauPx && a.widthPx == b.widthPx &&
+           a.heightPx == b.heightPx && a.queryLatencyFrames == b.queryLatencyFrames;
+}
+
+// Frames of the slowest tenth under `yardstick`, by the mean of its repeats; places in a series.
+std::vector<size_t> hardestPlaces(const BenchRun& yardstick) {
+    const size_t frames = yardstick.frames;
+    std::vector<double> cost(frames, 0.0);
+    for (size_t i = 0; i < yardstick.cpuMsSeries.size(); ++i) {
+        cost[i % frames] += yardstick.cpuMsSeries[i];
+    }
+    std::vector<size_t> order(frames);
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](size_t a, size_t b) { return cost[a] > cost[b]; });
+    order.resize(std::max<size_t>(1, frames / 10));
+    std::vector<size_t> places;
+    for (size_t base = 0; base < yardstick.cpuMsSeries.size(); base += frames) {
+        for (const size_t frame : order) places.push_back(base + frame);
+    }
+    return places;
+}
+
+std::vector<double> pick(const std::vector<double>& series, const std::vector<size_t>& places) {
+    std::vector<double> values;
+    for (const size_t place : places) values.push_back(series[place]);
+    return values;
+}
+
+Json ratioJson(const BenchRun& slow, const BenchRun& fast, const char* frames, const Ratio& ratio) {
+    return {{"path", slow.pathName},
+            {"tau", slow.tauPx},
+            {"width", slow.widthPx},
+            {"height", slow.heightPx},
+            {"query_latency", slow.queryLatencyFrames},
+            {"of", "cpu_ms"},
+            {"numerator", slow.strategy},
+            {"denominator", fast.strategy},
+            {"frames", frames},
+            {"ratio", shown(ratio.value)},
+            {"low", shown(ratio.low)},
+            {"high", shown(ratio.high)},
+            {"pairs", ratio.pairs}};
+}
+
+// CPU time of every strategy over every other one: how many times as fast the other is.
+Json ratiosJson(const std::vector<BenchRun>& runs) {
+    Json ratios = Json::array();
+    for (const BenchRun& slow : runs) {
+        for (const BenchRun& fast : runs) {
+            if (&slow == &fast || !isSameConfiguration(slow, fast)) continue;
+            ratios.push_back(
+                ratioJson(slow, fast, "all", ratioOf(slow.cpuMsSeries, fast.cpuMsSeries)));
+            if (slow.strategy != "frustum") continue;
+            const std::vector<size_t> places = hardestPlaces(slow);
+            ratios.push_back(
+                ratioJson(slow, fast, "hardest",
+                          ratioOf(pick(slow.cpuMsSeries, places), pick(fast.cpuMsSeries, places))));
+        }
+    }
+    return ratios;
+}
+
+}  // namespace
+
+std::string benchToJson(const BenchPlan& plan, const std::vector<BenchRun>& runs,
+                        const std::string& device) {
+    Json list = Json::array();
+    for (const BenchRun& run : runs) list.push_back(toJson(run));
+    const hlod::StrategyOptions options = plan.runtime.strategyOptions();
+    const std::string name = plan.database.substr(plan.database.find_last_of('/') + 1);
+    const Json json = {
+        {"database", name},
+        {"machine", {{"cores", std::thread::hardware_concurrency()}, {"device", device}}},
+        {"settings",
+         {{"bias", {options.biasS, options.biasT}},
+          {"host_budget", plan.runtime.hostBudget},
+          {"gpu_budget", plan.runtime.gpuBudget},
+          {"disk", plan.runtime.disk},
+          {"truth_every", plan.truthEvery}}},
+        {"runs", list},
+        {"ratios", ratiosJson(runs)},
+    };
+    return json.dump(1);
+}
+
+std::string benchToCsv(const std::vector<BenchRun>& runs) {
+    std::string csv;
+    bool isFirst = true;
+    for (const BenchRun& run : runs) {
+        const Json flat = toJson(run).flatten();
+        std::string names, values;
+        for (const auto& [key, value] : flat.items()) {
+            if (key.starts_with("/series") || key.starts_with("/faults")) continue;
+            const char* separator = names.empty() ? "" : ",";
+            names += fmt::format("{}{}", separator, key.substr(1));
+            values += fmt::format("{}{}", separator,
+                                  value.is_string() ? value.get<std::string>() : value.dump());
+        }
+        if (isFirst) csv += fmt::format("{}\n", names);
+        isFirst = false;
+        csv += fmt::format("{}\n", values);
+    }
+    return csv;
+}
+
+}  // namespace pagoda::tools

@@ -1,0 +1,184 @@
+#include "tools/bench/bench.h"
+#include "hlod/view/camera_path.h"
+#include "ooc/base/error.h"
+#include "ooc/base/file.h"
+#include "ooc/store/database.h"
+#include "tools/session.h"
+#include "viewer/gl_context.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <span>
+
+namespace pagoda::tools {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  pagoda path plant.pagoda --kind walk --frames 200 -o walk.json
+  pagoda bench plant.pagoda --path walk.json --strategy frustum,bool,coh --json r.json --csv r.csv
+  pagoda bench plant.pagoda --path walk.json --strategy coh,hzb --tau 1,2,4 --size 640x480,1024x768
+  pagoda bench plant.pagoda --path walk.json --strategy coh --query-latency 0,1,2 --repeats 1
+
+Strategies take turns at every frame of the path. Each passes it settled from cold (bytes), live
+with its pixels held against the same cut without culling (wrong pixels, PSNR against the cut at
+tau), and live and timed. Times are wall milliseconds of a frame and CPU milliseconds of all
+threads; ratios of CPU time come with a 95% interval. docs/bench.md says what each number means.)";
+
+struct Arguments {
+    std::string database, up;
+    std::vector<std::string> paths, strategies{"frustum", "bool", "coh"}, sizes{"640x480"};
+    std::vector<double> taus{1.0};
+    std::vector<uint32_t> latencies{0};
+    double speed = 1;
+    size_t frames = 0;
+    std::string json, csv;
+    BenchPlan plan;
+};
+
+std::string readText(const std::string& path) {
+    const std::vector<std::byte> bytes = readWholeFile(path, hlod::kMaxPathBytes);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// A report takes the place of an older one.
+void writeText(const std::string& path, const std::string& text) {
+    if (std::filesystem::is_regular_file(path)) std::filesystem::remove(path);
+    File file = File::create(path);
+    file.append(std::as_bytes(std::span(text)));
+    file.close();
+}
+
+void parseSize(const std::string& text, BenchConfiguration& configuration) {
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%5dx%5d%c", &configuration.widthPx, &configuration.heightPx,
+                    &rest) != 2 ||
+        configuration.widthPx < 1 || configuration.heightPx < 1) {
+        throw CLI::ValidationError("--size", "'" + text + "' is no size; write 640x480");
+    }
+}
+
+hlod::CameraPath readPath(const Arguments& arguments, const std::string& file) {
+    hlod::CameraPath path = hlod::parseCameraPath(readText(file), {}, file);
+    if (arguments.speed != 1) path = hlod::atSpeed(path, arguments.speed);
+    if (arguments.frames > 0 && path.frames.size() > arguments.frames) {
+        path.frames.resize(arguments.frames);
+    }
+    return path;
+}
+
+void addConfigurations(Arguments& arguments) {
+    for (const std::string& file : arguments.paths) {
+        const hlod::CameraPath path = readPath(arguments, file);
+        for (const std::string& size : arguments.sizes) {
+            for (const double tauPx : arguments.taus) {
+                for (const uint32_t latency : arguments.latencies) {
+                    BenchConfiguration configuration;
+                    configuration.pathName = std::filesystem::path(file).stem().string();
+                    configuration.path = path;
+                    configuration.tauPx = tauPx;
+                    configuration.queryLatencyFrames = latency;
+                    parseSize(size, configuration);
+                    arguments.plan.configurations.push_back(std::move(configuration));
+                }
+            }
+        }
+    }
+}
+
+void printTable(const std::vector<BenchRun>& runs) {
+    fmt::print(
+        "{:<8} {:<12} {:>5} {:>9} {:>3} {:>8} {:>9} {:>8} {:>6} {:>7} {:>8} {:>7} {:>9} {:>8}\n",
+        "strategy", "path", "tau", "size", "lat", "nodes", "k tri", "queries", "rarn", "delayed",
+        "wrong px", "PSNR Y", "frame ms", "cpu ms");
+    for (const BenchRun& run : runs) {
+        fmt::print(
+            "{:<8} {:<12} {:>5g} {:>9} {:>3} {:>8.1f} {:>9.1f} {:>8.1f} {:>6.2f} {:>7.2f} {:>8.2f} "
+            "{:>7.1f} {:>9.2f} {:>8.2f}\n",
+            run.strategy, run.pathName, run.tauPx, fmt::format("{}x{}", run.widthPx, run.heightPx),
+            run.queryLatencyFrames, run.drawnNodes, run.drawnTriangles * 1e-3, run.queries,
+            run.rarn, run.delayed, run.wrongPixels, run.psnrLuma, run.frameMs.median,
+            run.cpuMs.median);
+    }
+}
+
+void bench(Arguments& arguments, Session& session) {
+    addConfigurations(arguments);
+    BenchPlan& plan = arguments.plan;
+    plan.database = arguments.database;
+    plan.strategies = arguments.strategies;
+    const ooc::Database database = ooc::Database::open(arguments.database);
+    const auto metadata = nlohmann::json::parse(database.metadataJson(), nullptr, false);
+    if (metadata.is_object() && metadata.value("up", "") == "y") plan.worldUp = {0, 1, 0};
+    const viewer::GlContext context = viewer::GlContext::headless();
+    std::vector<BenchRun> runs;
+    for (const BenchConfiguration& configuration : plan.configurations) {
+        for (BenchRun& run : runBench(plan, configuration, *session.progress)) {
+            if (!run.faults.empty()) session.exitCode = 1;
+            for (const std::string& fault : run.faults) {
+                std::cerr << "pagoda: " << arguments.database << ": " << fault << '\n';
+            }
+            runs.push_back(std::move(run));
+        }
+    }
+    printTable(runs);
+    if (!arguments.json.empty()) {
+        writeText(arguments.json, benchToJson(plan, runs, context.rendererName()));
+    }
+    if (!arguments.csv.empty()) writeText(arguments.csv, benchToCsv(runs));
+}
+
+}  // namespace
+
+void addBenchCommand(CLI::App& app, Session& session) {
+    auto arguments = std::make_shared<Arguments>();
+    CLI::App* command = app.add_subcommand(
+        "bench", "Hold strategies against each other: error against run time along a path");
+    command->footer(kExamples);
+    command->add_option("database", arguments->database, "The database (NAME.pagoda)")->required();
+    command->add_option("--path", arguments->paths, "Camera paths (`pagoda path`)")
+        ->required()
+        ->delimiter(',');
+    command->add_option("--strategy", arguments->strategies, "Strategies to compare")
+        ->delimiter(',')
+        ->check(CLI::IsMember(strategyNames()))
+        ->capture_default_str();
+    command->add_option("--tau", arguments->taus, "Errors allowed on the screen, pixels")
+        ->delimiter(',')
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command->add_option("--size", arguments->sizes, "Pictures in pixels, WxH")
+        ->delimiter(',')
+        ->capture_default_str();
+    command->add_option("--speed", arguments->speed, "Go along the path so many times as fast")
+        ->check(CLI::Range(1.0, 1000.0))
+        ->capture_default_str();
+    command->add_option("--frames", arguments->frames, "The path's first frames only");
+    command->add_option("--repeats", arguments->plan.repeats, "Timed passes")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command
+        ->add_option("--truth-every", arguments->plan.truthEvery,
+                     "Compare the pixels of every N-th frame; 0: of none")
+        ->check(CLI::Range(0, 1000000))
+        ->capture_default_str();
+    command->add_option("--json", arguments->json, "Write all numbers as JSON");
+    command->add_option("--csv", arguments->csv, "Write one line a run as CSV");
+    addRuntimeOptions(*command, arguments->plan.runtime);
+    auto* latency = command->get_option("--query-latency");
+    command->remove_option(latency);
+    command
+        ->add_option("--query-latency", arguments->latencies,
+                     "Frames that answers of occlusion queries are late, simulated")
+        ->delimiter(',')
+        ->check(CLI::Range(0u, 64u))
+        ->capture_default_str();
+    command->callback([arguments, &session] { bench(*arguments, session); });
+}
+
+}  // namespace pagoda::tools
