@@ -56,6 +56,7 @@ void addCommands(CLI::App& app, Session& session) {
     addExtractCommand(app, session);
 #ifdef PAGODA_HAS_VIEWER
     addRenderCommand(app, session);
+    addBenchCommand(app, session);
 #endif
     addGenerateCommand(app, session);
     addPathCommand(app, session);
