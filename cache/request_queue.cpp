@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -45,35 +46,40 @@ void RequestQueue::forgetStale() {
     });
 }
 
+// Keys break ties: coarser nodes have smaller ids, and a replayed path asks in the same order.
+bool RequestQueue::Rank::isLater(const Rank& other) const {
+    if (isPrefetch != other.isPrefetch) return isPrefetch;
+    if (isBlock != other.isBlock) return other.isBlock;
+    return priority != other.priority ? priority < other.priority : key > other.key;
+}
+
+bool RequestQueue::Place::operator<(const Place& other) const {
+    return std::tie(database, offset, key) < std::tie(other.database, other.offset, other.key);
+}
+
+RequestQueue::Place RequestQueue::placeOf(Entry& entry) {
+    const Request& request = entry.request;
+    return {request.key.database, request.range.offset, request.key, &entry};
+}
+
 void RequestQueue::rank() {
     ranked_.clear();
+    byOffset_.clear();
     const double nowS = clock_.nowS();
     for (auto& [key, entry] : requests_) {
-        if (entry.ticket == 0 && entry.frame == frame_ && entry.notBeforeS <= nowS) {
-            ranked_.push_back(&entry);
-        }
+        if (entry.ticket != 0 || entry.frame != frame_ || entry.notBeforeS > nowS) continue;
+        const Request& request = entry.request;
+        ranked_.push_back({request.isPrefetch, key.isBlock, request.priority, key, &entry});
+        byOffset_.push_back(placeOf(entry));
     }
-    byOffset_ = ranked_;
-    // Keys break ties: coarser nodes have smaller ids, and a replayed path asks in the same order.
-    std::sort(ranked_.begin(), ranked_.end(), [](const Entry* a, const Entry* b) {
-        const Request &p = a->request, &q = b->request;
-        if (p.isPrefetch != q.isPrefetch) return q.isPrefetch;
-        if (p.key.isBlock != q.key.isBlock) return p.key.isBlock;
-        return p.priority != q.priority ? p.priority > q.priority : p.key < q.key;
-    });
-    std::sort(byOffset_.begin(), byOffset_.end(), isBefore);
+    // Few of many are sent: a heap finds them sooner than sorting would.
+    std::make_heap(ranked_.begin(), ranked_.end(), std::mem_fn(&Rank::isLater));
+    std::sort(byOffset_.begin(), byOffset_.end());
 }
 
-// On disk.
-bool RequestQueue::isBefore(const Entry* a, const Entry* b) {
-    return std::tuple(a->request.key.database, a->request.range.offset, a->request.key) <
-           std::tuple(b->request.key.database, b->request.range.offset, b->request.key);
-}
-
-bool RequestQueue::isReadFree(const Request& request) const {
-    const size_t limit = request.isPrefetch
-                             ? std::min(limits_.prefetchBelowReads, limits_.readsInFlight)
-                             : limits_.readsInFlight;
+bool RequestQueue::isReadFree(bool isPrefetch) const {
+    const size_t limit = isPrefetch ? std::min(limits_.prefetchBelowReads, limits_.readsInFlight)
+                                    : limits_.readsInFlight;
     return loads_.readsInFlight() < limit;
 }
 
@@ -82,51 +88,54 @@ void RequestQueue::send(const Admit& admit) {
     if (loads_.readsInFlight() >= limits_.readsInFlight) return;
     rank();
     bool isFull[2] = {false, false};
-    for (Entry* entry : ranked_) {
-        const Request& request = entry->request;
-        if (entry->ticket != 0 || isFull[request.key.isBlock]) continue;  // joined already
-        if (!isReadFree(request)) return;
-        if (admit(request)) {
-            sendRead(entry, admit);
-        } else {
-            isFull[request.key.isBlock] = true;
+    while (!ranked_.empty() && !(isFull[0] && isFull[1])) {
+        std::pop_heap(ranked_.begin(), ranked_.end(), std::mem_fn(&Rank::isLater));
+        const Rank best = ranked_.back();
+        ranked_.pop_back();
+        if (best.entry->ticket != 0 || isFull[best.isBlock]) continue;  // joined already
+        if (!isReadFree(best.isPrefetch)) return;
+        if (admit(best.entry->request)) {
+            sendRead(*best.entry, admit);
+            continue;
         }
+        isFull[best.isBlock] = true;
+        std::erase_if(ranked_, [&](const Rank& other) { return other.isBlock == best.isBlock; });
+        std::make_heap(ranked_.begin(), ranked_.end(), std::mem_fn(&Rank::isLater));
     }
 }
 
 // `best` is admitted; neighbours on disk that are wanted too, and admitted, join its read.
-void RequestQueue::sendRead(Entry* best, const Admit& admit) {
-    const auto found = std::lower_bound(byOffset_.begin(), byOffset_.end(), best, isBefore);
+void RequestQueue::sendRead(Entry& best, const Admit& admit) {
+    const auto found = std::lower_bound(byOffset_.begin(), byOffset_.end(), placeOf(best));
     const auto place = static_cast<size_t>(found - byOffset_.begin());
-    uint64_t begin = best->request.range.offset, end = best->request.range.end();
+    uint64_t begin = best.request.range.offset, end = best.request.range.end();
     const auto joins = [&](const Entry& entry) {
         const Request& other = entry.request;
-        return entry.ticket == 0 && other.key.database == best->request.key.database &&
-               other.key.isBlock == best->request.key.isBlock &&
-               other.isPrefetch == best->request.isPrefetch;
+        return entry.ticket == 0 && other.key.database == best.request.key.database &&
+               other.key.isBlock == best.request.key.isBlock &&
+               other.isPrefetch == best.request.isPrefetch;
     };
     size_t low = place, high = place + 1;
-    while (high < byOffset_.size() && joins(*byOffset_[high])) {
-        const ByteRange& range = byOffset_[high]->request.range;
-        if (range.offset < end || range.offset - end > limits_.joinGapBytes ||
-            range.end() - begin > limits_.readBytes || !admit(byOffset_[high]->request)) {
+    while (high < byOffset_.size() && joins(*byOffset_[high].entry)) {
+        const Request& next = byOffset_[high].entry->request;
+        if (next.range.offset < end || next.range.offset - end > limits_.joinGapBytes ||
+            next.range.end() - begin > limits_.readBytes || !admit(next)) {
             break;
         }
-        end = range.end();
+        end = next.range.end();
         ++high;
     }
-    while (low > 0 && joins(*byOffset_[low - 1])) {
-        const ByteRange& range = byOffset_[low - 1]->request.range;
-        if (range.end() > begin || begin - range.end() > limits_.joinGapBytes ||
-            end - range.offset > limits_.readBytes || !admit(byOffset_[low - 1]->request)) {
+    while (low > 0 && joins(*byOffset_[low - 1].entry)) {
+        const Request& previous = byOffset_[low - 1].entry->request;
+        if (previous.range.end() > begin || begin - previous.range.end() > limits_.joinGapBytes ||
+            end - previous.range.offset > limits_.readBytes || !admit(previous)) {
             break;
         }
-        begin = range.offset;
+        begin = previous.range.offset;
         --low;
     }
     ++counters_.reads;
     counters_.bytesRead += end - begin;
-    if (best->request.key.isBlock) counters_.blockBytesRead += end - begin;
     sendItems(low, high);
 }
 
@@ -134,7 +143,7 @@ void RequestQueue::sendRead(Entry* best, const Admit& admit) {
 void RequestQueue::sendItems(size_t low, size_t high) {
     std::vector<LoadItem> items;
     for (size_t i = low; i < high; ++i) {
-        Entry& entry = *byOffset_[i];
+        Entry& entry = *byOffset_[i].entry;
         const Request& request = entry.request;
         entry.ticket = nextTicket_++;
         tickets_.emplace(entry.ticket, request.key);

@@ -98,12 +98,27 @@ private:
         uint32_t failures = 0;
         double notBeforeS = 0;
     };
+    // What requests are ordered by, side by side: ten thousand are sorted in each frame.
+    struct Rank {
+        bool isPrefetch, isBlock;
+        double priority;
+        RequestKey key;
+        Entry* entry;
+        [[nodiscard]] bool isLater(const Rank& other) const;
+    };
+    struct Place {
+        uint32_t database;
+        uint64_t offset;
+        RequestKey key;
+        Entry* entry;
+        [[nodiscard]] bool operator<(const Place& other) const;
+    };
     using Admit = std::function<bool(const Request&)>;
     void forgetStale();
     void rank();
-    [[nodiscard]] static bool isBefore(const Entry* a, const Entry* b);
-    [[nodiscard]] bool isReadFree(const Request& request) const;
-    void sendRead(Entry* best, const Admit& admit);
+    [[nodiscard]] static Place placeOf(Entry& entry);
+    [[nodiscard]] bool isReadFree(bool isPrefetch) const;
+    void sendRead(Entry& best, const Admit& admit);
     void sendItems(size_t low, size_t high);
 
     LoadQueue& loads_;
@@ -111,8 +126,8 @@ private:
     Limits limits_;
     std::unordered_map<RequestKey, Entry, RequestKeyHash> requests_;
     std::unordered_map<uint64_t, RequestKey> tickets_;
-    std::vector<Entry*> ranked_;    // waiting, best first
-    std::vector<Entry*> byOffset_;  // the same, by place on disk
+    std::vector<Rank> ranked_;     // waiting: a heap, the best on top
+    std::vector<Place> byOffset_;  // the same, by place on disk
     std::vector<LoadResult> results_;
     uint64_t frame_ = 1, nextTicket_ = 1;
     Counters counters_;

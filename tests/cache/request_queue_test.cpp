@@ -112,10 +112,10 @@ TEST(RequestQueue, WithinAFrameTheGreatestPriorityHoldsAndAWantBeatsAPrefetch) {
     EXPECT_FALSE(queue.requests.ask(prefetched(page(2, 100, 100))));
     EXPECT_TRUE(queue.requests.ask(page(2, 7, 100)));
     EXPECT_FALSE(queue.requests.ask(page(2, 7, 100)));
-    EXPECT_TRUE(queue.requests.ask(page(3, 7.5, 200)));
+    EXPECT_TRUE(queue.requests.ask(page(3, 6, 200)));
     EXPECT_EQ(queue.requests.counters().asked, 3u);
     queue.send();
-    EXPECT_EQ(queue.reads(), (Reads{{1}, {3}, {2}}));
+    EXPECT_EQ(queue.reads(), (Reads{{1}, {2}, {3}}));
     queue.requests.beginFrame();  // the next frame, all of it sent: wanted once more
     EXPECT_FALSE(queue.requests.ask(prefetched(page(1, 1, 0))));
     EXPECT_TRUE(queue.requests.ask(page(1, 1, 0)));
@@ -159,6 +159,12 @@ TEST(RequestQueue, NeverJoinsAcrossDatabasesKindsOrUrgency) {
     elsewhere.key.database = 1;
     queue.frame({page(1, 5, 0), elsewhere, block(3, 5, 20), prefetched(page(4, 5, 30))});
     EXPECT_EQ(queue.reads(), (Reads{{3}, {1}, {2}, {4}}));
+    queue.collect();
+    for (const Request& neighbour : {elsewhere, block(2, 4, 10), prefetched(page(2, 4, 10))}) {
+        Queue pair({.readsInFlight = kMany, .joinGapBytes = 50, .readBytes = 1000});
+        pair.frame({page(1, 5, 0), neighbour});
+        EXPECT_EQ(pair.loads.reads.size(), 2u);
+    }
 }
 
 TEST(RequestQueue, APageLongerThanTheLimitIsReadAlone) {

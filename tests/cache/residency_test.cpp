@@ -258,7 +258,7 @@ TEST(Residency, APageThatCannotBeDrawnIsAFault) {
 TEST(Residency, UploadsTheBestFirstWithinTheFramesBoundButTheFirstAlwaysGoes) {
     Tree tree;
     tree.records[3].vertexCount = 100;  // child 2: alone more than the bound
-    World world({{kPlenty, kPlenty, 25}, {}});
+    World world({{kPlenty, kPlenty, 35}, {}});
     const std::vector<const ooc::NodeRecord*> wanted{&tree.child(5), &tree.child(0), &tree.child(2),
                                                      &tree.child(1)};
     world.frames(1, wanted);
