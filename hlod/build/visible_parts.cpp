@@ -7,6 +7,9 @@
 namespace pagoda::hlod {
 namespace {
 
+// Directions as three digits of -1, 0, 1; one of each opposite pair comes after (0, 0, 0), code 13.
+constexpr int kFirstCode = 14;
+
 // A parallel projection seen from both ends: the nearest and the farthest triangle of every pixel.
 class ParallelView {
 public:
@@ -49,12 +52,11 @@ public:
         }
     }
 
-    void count(std::vector<uint32_t>& pixels) const {
-        for (const std::vector<Pixel>* side : {&near_, &far_}) {
-            for (const Pixel& pixel : *side) {
-                if (pixel.number != UINT32_MAX) ++pixels[pixel.number];
-            }
-        }
+    [[nodiscard]] SeenNumbers numbers() const {
+        SeenNumbers numbers;
+        for (const Pixel& pixel : near_) numbers[0].push_back(pixel.number);
+        for (const Pixel& pixel : far_) numbers[1].push_back(pixel.number);
+        return numbers;
     }
 
 private:
@@ -103,27 +105,35 @@ private:
 
 }  // namespace
 
+SeenNumbers seenAlong(int line, std::span<const SoupTriangle> triangles, const Box3i& box,
+                      int resolution) {
+    const Vec3d centre = (Vec3d(box.min) + Vec3d(box.max)) * 0.5;
+    const auto halfExtent =
+        static_cast<float>(0.5 * glm::length(Vec3d(box.max) - Vec3d(box.min)) + 1);
+    const int code = kFirstCode + line;
+    ParallelView view(Vec3f(Vec3i(code % 3, code / 3 % 3, code / 9) - 1), halfExtent, resolution);
+    for (uint32_t i = 0; i < triangles.size(); ++i) {
+        std::array<Vec3f, 3> local;
+        for (size_t corner = 0; corner < 3; ++corner) {
+            local[corner] = Vec3f(Vec3d(triangles[i].corners[corner]) - centre);
+        }
+        view.draw(i, local);
+    }
+    return view.numbers();
+}
+
 std::vector<uint32_t> countVisiblePixels(std::span<const SoupTriangle> triangles, int resolution) {
     std::vector<uint32_t> pixels(triangles.size(), 0);
     Box3i box;
     for (const SoupTriangle& triangle : triangles) {
         for (const Vec3i& corner : triangle.corners) box.extend(corner);
     }
-    const Vec3d centre = (Vec3d(box.min) + Vec3d(box.max)) * 0.5;
-    const auto halfExtent =
-        static_cast<float>(0.5 * glm::length(Vec3d(box.max) - Vec3d(box.min)) + 1);
-    std::vector<std::array<Vec3f, 3>> local(triangles.size());
-    for (size_t i = 0; i < triangles.size(); ++i) {
-        for (size_t corner = 0; corner < 3; ++corner) {
-            local[i][corner] = Vec3f(Vec3d(triangles[i].corners[corner]) - centre);
+    for (int line = 0; line < kViewLines; ++line) {
+        for (const std::vector<uint32_t>& end : seenAlong(line, triangles, box, resolution)) {
+            for (const uint32_t number : end) {
+                if (number != UINT32_MAX) ++pixels[number];
+            }
         }
-    }
-    // One of each pair of opposite directions: a view has two ends.
-    for (int code = 14; code < 27; ++code) {
-        const Vec3f direction(Vec3i(code % 3, code / 3 % 3, code / 9) - 1);
-        ParallelView view(direction, halfExtent, resolution);
-        for (uint32_t i = 0; i < local.size(); ++i) view.draw(i, local[i]);
-        view.count(pixels);
     }
     return pixels;
 }

@@ -4,7 +4,9 @@
 #pragma once
 
 #include "hlod/build/soup.h"
+#include "ooc/base/box.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -17,5 +19,16 @@ namespace pagoda::hlod {
 // lower number. O(triangles + pixels they cover).
 [[nodiscard]] std::vector<uint32_t> countVisiblePixels(std::span<const SoupTriangle> triangles,
                                                        int resolution);
+
+// Each line carries two of the 26 directions, seen from either end.
+inline constexpr int kViewLines = 13;
+
+// For each pixel, row by row, the number of the triangle nearest to that end; UINT32_MAX: none.
+using SeenNumbers = std::array<std::vector<uint32_t>, 2>;
+
+// One projection, `resolution` pixels along the diagonal of `box`, which holds the triangles: two
+// sets drawn with one box fit on each other. The rest as above.
+[[nodiscard]] SeenNumbers seenAlong(int line, std::span<const SoupTriangle> triangles,
+                                    const Box3i& box, int resolution);
 
 }  // namespace pagoda::hlod
