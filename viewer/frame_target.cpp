@@ -88,20 +88,27 @@ void FrameTarget::begin(const Background& background) {
         glColorMaski(output, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     }
     glDepthMask(GL_TRUE);
+    const GLfloat transparent[4] = {0, 0, 0, 0};
     const GLuint none[4] = {0, 0, 0, 0};
     const GLfloat farthest = 0.0f;
+    glClearBufferfv(GL_COLOR, 0, transparent);
     glClearBufferuiv(GL_COLOR, 1, none);
     glClearBufferuiv(GL_COLOR, 2, none);
     glClearBufferfv(GL_DEPTH, 0, &farthest);
 
-    glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    glColorMaski(2, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     const auto setColour = [&](GLint location, const glm::u8vec3& c) {
         glProgramUniform3f(backgroundProgram_.id(), location, static_cast<float>(c.x) / 255.0f,
                            static_cast<float>(c.y) / 255.0f, static_cast<float>(c.z) / 255.0f);
     };
     setColour(0, background.top);
     setColour(1, background.bottom);
+}
+
+void FrameTarget::paintBackground() {
+    glColorMaski(1, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glColorMaski(2, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    glDepthFunc(GL_EQUAL);  // the farthest depth, as it was cleared
+    glDepthMask(GL_FALSE);
     glUseProgram(backgroundProgram_.id());
     glBindVertexArray(emptyArray_.id());
     glDrawArrays(GL_TRIANGLES, 0, 3);

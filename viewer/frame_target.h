@@ -14,8 +14,11 @@ public:
     // Throws Error when the driver has no textures of that size.
     FrameTarget(int widthPx, int heightPx);
 
-    // Binds it, clears it, and paints the background where coverage is 0.
+    // Binds it and clears it.
     void begin(const Background& background);
+    // Paints the background where nothing opaque is, so that it costs what is seen of it. Between
+    // opaque and translucent draws; programs and arrays must be bound anew.
+    void paintBackground();
     // Which outputs the next draws write: all, or colour alone, blended, with depth left as it is.
     void beginOpaque();
     void beginTranslucent();

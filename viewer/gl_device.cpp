@@ -56,6 +56,7 @@ void GlDevice::beginFrame(const hlod::View& view) {
     gathered_.clear();
     drawnNodes_ = drawnTriangles_ = 0;
     drawMs_ = 0.0;
+    isBackgroundPainted_ = false;
     Stopwatch watch;
     target_->begin(background_);
     latticeView_ = makeLatticeView(view, lattice_);
@@ -118,6 +119,8 @@ void GlDevice::drawZippers(const hlod::FrameCut& cut, hlod::FrameRecord& record)
 void GlDevice::drawTranslucent(std::span<const hlod::Node> order, hlod::FrameRecord& record) {
     std::vector<DrawItem> items;
     for (const hlod::Node& node : order) items.push_back({node.page(), 0});
+    if (!isBackgroundPainted_) target_->paintBackground();
+    isBackgroundPainted_ = true;
     target_->beginTranslucent();
     drawer_.rebind(program_);
     const uint64_t triangles = drawer_.drawTranslucent(items);

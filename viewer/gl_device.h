@@ -62,6 +62,7 @@ private:
     std::vector<DrawItem> gathered_;
     uint64_t drawnNodes_ = 0, drawnTriangles_ = 0;
     double drawMs_ = 0.0;
+    bool isBackgroundPainted_ = false;  // in this frame
 };
 
 // Nodes with translucent parts among `nodes`, from back to front by their centres.
