@@ -10,6 +10,9 @@ namespace {
 
 constexpr int kBlock = 8;
 constexpr double kGrowPx = 0.5, kGrowShare = 1e-5;
+// Projected corners are rounded, edges are not: no pixel centre may fall between the two.
+constexpr double kSlackPx = 1e-6;
+constexpr double kLeastDepth = 1e-3;  // in near planes: corners closer to the eye project nowhere
 
 // Faces as rings of corners, counter-clockwise from outside; bits 0 to 2 of a corner choose between
 // least and greatest x, y and z. In the order -x, +x, -y, +y, -z, +z.
@@ -26,10 +29,11 @@ struct Plane {
     }
 };
 
-// Zero on the line from p to q, positive on its left.
-Plane edge(double px, double py, double qx, double qy) {
-    const double a = py - qy, b = qx - px;
-    return {a, b, -(a * px + b * py)};
+// Zero on the line from p to q, positive on its left. Corners are homogeneous, so that those behind
+// the eye need no clipping.
+Plane edge(const Vec3d& p, const Vec3d& q) {
+    const Vec3d normal = glm::cross(p, q);
+    return {normal.x, normal.y, normal.z};
 }
 
 }  // namespace
@@ -62,61 +66,69 @@ uint64_t BoxRaster::visiblePixels(const Box3d& box) const {
     const Vec3d grow =
         glm::max(Vec3d(pixel), kGrowShare * glm::max(glm::abs(least), glm::abs(most)));
     const Vec3d low = least - grow, high = most + grow;
-    std::array<Corner, 8> corners;
+    // (x w, y w, w) of a pixel (x, y) and a depth w, by axes.
+    const auto place = [&](const Vec3d& p) {
+        const double w = glm::dot(forward_, p);
+        return Vec3d(0.5 * width_ * (glm::dot(right_, p) / tanX_ + w),
+                     0.5 * height_ * (glm::dot(up_, p) / tanY_ + w), w);
+    };
+    std::array<Vec3d, 8> corners;
     for (size_t i = 0; i < 8; ++i) {
-        const Vec3d p((i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
-                      (i & 4) != 0 ? high.z : low.z);
-        // Growing may push a corner behind the eye: it is kept in front, where it is nearest.
-        const double depth = std::max(glm::dot(forward_, p), near_ * 1e-3);
-        corners[i] = {0.5 * width_ * (1.0 + glm::dot(right_, p) / (depth * tanX_)),
-                      0.5 * height_ * (1.0 + glm::dot(up_, p) / (depth * tanY_)), near_ / depth};
+        corners[i] = place({(i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
+                            (i & 4) != 0 ? high.z : low.z});
     }
     // The eye is at the origin: a face is a front face when the origin is on its outer side.
-    const bool isFront[6] = {low.x > 0, high.x<0, low.y> 0, high.y<0, low.z> 0, high.z < 0};
+    const double sides[6] = {low.x, high.x, low.y, high.y, low.z, high.z};
     uint64_t pixels = 0;
     bool hasFront = false;
     for (size_t face = 0; face < 6; ++face) {
-        if (!isFront[face]) continue;
+        if (!(face % 2 == 0 ? sides[face] > 0.0 : sides[face] < 0.0)) continue;
         hasFront = true;
-        const auto& ring = kFaces[face];
-        pixels += visiblePixels(
-            corners[static_cast<size_t>(ring[0])], corners[static_cast<size_t>(ring[1])],
-            corners[static_cast<size_t>(ring[2])], corners[static_cast<size_t>(ring[3])]);
+        Quad quad;
+        for (size_t i = 0; i < 4; ++i)
+            quad.corners[i] = corners[static_cast<size_t>(kFaces[face][i])];
+        const auto axis = static_cast<glm::length_t>(face / 2);
+        // The ray through a pixel, one unit along the view, reaches the face after side /
+        // ray[axis].
+        const double scale = near_ / sides[face];
+        const double x = 2.0 * tanX_ / width_ * right_[axis], y = 2.0 * tanY_ / height_ * up_[axis];
+        quad.depth[0] = scale * x;
+        quad.depth[1] = scale * y;
+        quad.depth[2] = scale * (forward_[axis] - tanX_ * right_[axis] - tanY_ * up_[axis]);
+        pixels += visiblePixels(quad);
     }
     // The grown box holds the eye: visible.
     return hasFront ? pixels : static_cast<uint64_t>(width_) * static_cast<uint64_t>(height_);
 }
 
-// A convex quadrilateral, counter-clockwise on the screen. Reversed depth is affine over the
-// screen, so that one plane gives it everywhere.
-uint64_t BoxRaster::visiblePixels(const Corner& a, const Corner& b, const Corner& c,
-                                  const Corner& d) const {
-    const std::array<const Corner*, 4> ring = {&a, &b, &c, &d};
-    double minX = a.x, maxX = a.x, minY = a.y, maxY = a.y;
-    for (const Corner* corner : ring) {
-        minX = std::min(minX, corner->x);
-        maxX = std::max(maxX, corner->x);
-        minY = std::min(minY, corner->y);
-        maxY = std::max(maxY, corner->y);
+// Pixels whose centres may lie inside; all when a corner is behind the eye.
+BoxRaster::Rect BoxRaster::rectOf(const Quad& quad) const {
+    Rect rect{0, 0, width_ - 1, height_ - 1};
+    double minX = 1e300, maxX = -1e300, minY = 1e300, maxY = -1e300;
+    for (const Vec3d& corner : quad.corners) {
+        if (!(corner.z > near_ * kLeastDepth)) return rect;
+        minX = std::min(minX, corner.x / corner.z);
+        maxX = std::max(maxX, corner.x / corner.z);
+        minY = std::min(minY, corner.y / corner.z);
+        maxY = std::max(maxY, corner.y / corner.z);
     }
-    const int x0 = static_cast<int>(std::clamp(std::ceil(minX - 0.5), 0.0, 1.0 * width_));
-    const int x1 = static_cast<int>(std::clamp(std::floor(maxX - 0.5), -1.0, width_ - 1.0));
-    const int y0 = static_cast<int>(std::clamp(std::ceil(minY - 0.5), 0.0, 1.0 * height_));
-    const int y1 = static_cast<int>(std::clamp(std::floor(maxY - 0.5), -1.0, height_ - 1.0));
-    if (x0 > x1 || y0 > y1) return 0;
+    const auto first = [](double least, int size) {
+        return static_cast<int>(std::clamp(std::ceil(least - 0.5 - kSlackPx), 0.0, 1.0 * size));
+    };
+    const auto last = [](double most, int size) {
+        return static_cast<int>(std::clamp(std::floor(most - 0.5 + kSlackPx), -1.0, size - 1.0));
+    };
+    return {first(minX, width_), first(minY, height_), last(maxX, width_), last(maxY, height_)};
+}
 
-    const double ux = b.x - a.x, uy = b.y - a.y, uz = b.depth - a.depth;
-    const double vx = d.x - a.x, vy = d.y - a.y, vz = d.depth - a.depth;
-    const double area = ux * vy - uy * vx;
-    if (!(area > 0.0)) return 0;  // edge-on
-    Plane depth;
-    depth.a = (uz * vy - uy * vz) / area;
-    depth.b = (ux * vz - uz * vx) / area;
-    depth.c = a.depth - depth.a * a.x - depth.b * a.y;
+// A front face, counter-clockwise on the screen. Reversed depth is affine over the screen, so that
+// one plane gives it everywhere.
+uint64_t BoxRaster::visiblePixels(const Quad& quad) const {
+    const auto [x0, y0, x1, y1] = rectOf(quad);
+    if (x0 > x1 || y0 > y1) return 0;
+    const Plane depth{quad.depth[0], quad.depth[1], quad.depth[2]};
     std::array<Plane, 4> edges;
-    for (size_t i = 0; i < 4; ++i) {
-        edges[i] = edge(ring[i]->x, ring[i]->y, ring[(i + 1) % 4]->x, ring[(i + 1) % 4]->y);
-    }
+    for (size_t i = 0; i < 4; ++i) edges[i] = edge(quad.corners[i], quad.corners[(i + 1) % 4]);
 
     uint64_t pixels = 0;
     for (int blockY = y0 / kBlock; blockY <= y1 / kBlock; ++blockY) {

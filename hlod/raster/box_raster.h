@@ -6,6 +6,7 @@
 
 #include "hlod/view/camera.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -25,12 +26,15 @@ public:
     [[nodiscard]] uint64_t visiblePixels(const Box3d& boxModel) const;
 
 private:
-    struct Corner {
-        double x, y;   // pixels, from the bottom left
-        double depth;  // reversed
+    struct Quad {
+        std::array<Vec3d, 4> corners;  // (x w, y w, w): x and y in pixels from the bottom left
+        double depth[3];               // reversed, of pixel (x, y): [0] x + [1] y + [2]
     };
-    [[nodiscard]] uint64_t visiblePixels(const Corner& a, const Corner& b, const Corner& c,
-                                         const Corner& d) const;
+    struct Rect {
+        int x0, y0, x1, y1;  // inclusive
+    };
+    [[nodiscard]] Rect rectOf(const Quad& quad) const;
+    [[nodiscard]] uint64_t visiblePixels(const Quad& quad) const;
 
     Vec3d eye_{0.0}, right_{0.0}, up_{0.0}, forward_{0.0};
     double tanX_ = 1, tanY_ = 1, near_ = 1;
