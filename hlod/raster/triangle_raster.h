@@ -1,8 +1,9 @@
 // triangle_raster.h: a small exact z-buffer: meshes of lattice points into depths and ids, in
 // double, without snapping. For tests and soaks, not for speed at large pictures. A pixel belongs
 // to a triangle when the ray through its centre meets it; triangles that share an edge, in one mesh
-// or in two, neither overlap nor leave a gap along it (homogeneous rasterisation, Olano and Greer
-// 1997: edges behind the eye need no clipping). One thread.
+// or in two, neither overlap nor leave a gap along it, but at its ends within rounding of a pixel
+// centre (homogeneous rasterisation, Olano and Greer 1997: nothing behind the eye is clipped). One
+// thread.
 #pragma once
 
 #include "hlod/raster/software_pages.h"
