@@ -87,18 +87,17 @@ void RequestQueue::send(const Admit& admit) {
     forgetStale();
     if (loads_.readsInFlight() >= limits_.readsInFlight) return;
     rank();
-    bool isFull[2] = {false, false};
-    while (!ranked_.empty() && !(isFull[0] && isFull[1])) {
+    while (!ranked_.empty()) {
         std::pop_heap(ranked_.begin(), ranked_.end(), std::mem_fn(&Rank::isLater));
         const Rank best = ranked_.back();
         ranked_.pop_back();
-        if (best.entry->ticket != 0 || isFull[best.isBlock]) continue;  // joined already
+        if (best.entry->ticket != 0) continue;  // joined already
         if (!isReadFree(best.isPrefetch)) return;
         if (admit(best.entry->request)) {
             sendRead(*best.entry, admit);
             continue;
         }
-        isFull[best.isBlock] = true;
+        // All that is left is less urgent.
         std::erase_if(ranked_, [&](const Rank& other) { return other.isBlock == best.isBlock; });
         std::make_heap(ranked_.begin(), ranked_.end(), std::mem_fn(&Rank::isLater));
     }

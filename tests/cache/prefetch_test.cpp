@@ -82,6 +82,25 @@ TEST(Prefetch, WhatWasEvictedBeforeItWasWantedWasNotUsed) {
     EXPECT_EQ(world.residency.counters().reloadedPages, 1u);
 }
 
+TEST(Prefetch, WhatWasEvictedFromHostMemoryWithoutHavingBeenUploadedWasNotUsedEither) {
+    const Tree tree({.gapBytes = 1 << 20});
+    World world({{100 + decodedBytes(tree.root()), 20, 0}, {}});
+    world.frames(2, {&tree.root()});
+    world.gpu.noRoom = -1;
+    world.begin();
+    world.want(tree.root());
+    world.prefetch(tree.child(0));
+    world.end();
+    world.frames(4, {&tree.root()});
+    world.gpu.noRoom = 0;
+    world.frames(3, {&tree.root(), &tree.child(1)});  // takes its place
+    world.frames(4, {&tree.root()});
+    world.frames(4, {&tree.root(), &tree.child(0)});
+    EXPECT_TRUE(world.isResident(tree.child(0)));
+    EXPECT_EQ(world.residency.counters().prefetchedBytes, 100u);
+    EXPECT_EQ(world.residency.counters().usedPrefetchedBytes, 0u);
+}
+
 TEST(Prefetch, TakesNoRoomFromWhatWasUsedOrKeptLately) {
     const Tree tree;
     World world({{kPlenty, 20, 0}, {}});
