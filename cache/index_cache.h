@@ -1,6 +1,6 @@
 // index_cache.h: the index blocks that have been looked at, within a byte budget, least recently
 // used first out. A block that is absent is asked for; refinement stops there meanwhile. Each
-// resident block owns a range of kMaxNodesPerBlock slots: a node's slot is a small number by which
+// resident block owns a range of kSlotsPerBlock slots: a node's slot is a small number by which
 // traversals keep what they know of it (another node may own it later). One a database. Render
 // thread only. Pointers stay valid until the next beginFrame().
 #pragma once

@@ -1,12 +1,14 @@
 #include "cache/disk_loads.h"
 
 #include "ooc/base/error.h"
-#include "scripted_world.h"
+#include "tests/cache/scripted_world.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
+#include <vector>
 
 namespace pagoda::cache {
 namespace {
@@ -161,6 +163,40 @@ TEST(DiskLoads, AReadThatTheInnerQueueHasLostDoesNotKeepWaitersForEver) {
     EXPECT_TRUE(disk.loads->waitForArrival());
     disk.loads->collect(arrived);
     EXPECT_EQ(arrived.size(), 1u);
+}
+
+// Time that goes on by itself, but is driven by hand here.
+class HandClock final : public Clock {
+public:
+    double nowS() const override { return timeS; }
+    void waitUntil(double untilS) override { timeS = std::max(timeS, untilS); }
+    bool isManual() const override { return false; }
+    double timeS = 0;
+};
+
+TEST(DiskLoads, InRealTimeCollectingNeverWaitsForDecodingButWaitingDoes) {
+    HandClock clock;
+    auto scripted = std::make_unique<ScriptedLoads>();
+    ScriptedLoads& inner = *scripted;
+    DiskLoads loads(std::move(scripted), {.latencyS = 0.1}, clock);
+    inner.hold();
+    loads.send({Disk::item(1, 0, 10), Disk::item(2, 10, 10)});
+    loads.send({Disk::item(3, 500, 10)});
+    clock.timeS = 0.05;
+    inner.answer(1);  // the second read is decoded first, and before its time
+    std::vector<LoadResult> arrived;
+    loads.collect(arrived);
+    EXPECT_TRUE(arrived.empty());
+    clock.timeS = 1;
+    loads.collect(arrived);
+    EXPECT_TRUE(arrived.empty());  // due, but the first read is not decoded
+    inner.letGo();
+    EXPECT_TRUE(loads.waitForArrival());
+    loads.collect(arrived);
+    ASSERT_EQ(arrived.size(), 3u);
+    EXPECT_EQ(arrived[0].ticket, 1u);
+    EXPECT_EQ(arrived[2].ticket, 3u);
+    EXPECT_FALSE(loads.waitForArrival());
 }
 
 TEST(DiskProfile, IsReadFromText) {

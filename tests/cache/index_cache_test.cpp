@@ -1,7 +1,7 @@
 #include "cache/index_cache.h"
 
-#include "memory_source.h"
-#include "scripted_world.h"
+#include "tests/cache/memory_source.h"
+#include "tests/cache/scripted_world.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // What nothing on the screen needs yet is never in the way of what something does.
 #include "cache/residency.h"
 
-#include "scripted_world.h"
+#include "tests/cache/scripted_world.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // What is sent, in which order, and joined how. Retries and waiting: request_retry_test.cpp.
 #include "cache/request_queue.h"
 
-#include "scripted_world.h"
+#include "tests/cache/scripted_world.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

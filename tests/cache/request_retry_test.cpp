@@ -1,7 +1,7 @@
 // What fails is tried again, and whoever waits is told the truth.
 #include "cache/request_queue.h"
 
-#include "scripted_world.h"
+#include "tests/cache/scripted_world.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // each step held against a plain model that counts all over again.
 #include "cache/residency.h"
 
-#include "scripted_world.h"
+#include "tests/cache/scripted_world.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // residency_soak_test.cpp; prefetching: prefetch_test.cpp.
 #include "cache/residency.h"
 
-#include "scripted_world.h"
+#include "tests/cache/scripted_world.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

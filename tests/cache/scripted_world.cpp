@@ -1,4 +1,4 @@
-#include "scripted_world.h"
+#include "tests/cache/scripted_world.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 
 #include "cache/disk_loads.h"
 #include "cache/thread_loads.h"
-#include "memory_source.h"
-#include "scripted_world.h"
+#include "tests/cache/memory_source.h"
+#include "tests/cache/scripted_world.h"
 
 #include <gtest/gtest.h>
 

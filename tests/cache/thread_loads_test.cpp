@@ -1,6 +1,6 @@
 #include "cache/thread_loads.h"
 
-#include "memory_source.h"
+#include "tests/cache/memory_source.h"
 
 #include <gtest/gtest.h>
 
