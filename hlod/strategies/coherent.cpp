@@ -139,7 +139,7 @@ void CoherentStrategy::ask(uint32_t index) {
     if (visits_[index].prediction == Prediction::Stop) emit(index);
 }
 
-CoherentStrategy::Prediction CoherentStrategy::predict(const Visit& visit, const Memory& memory) {
+CoherentStrategy::Prediction CoherentStrategy::predict(Visit& visit, const Memory& memory) {
     if (rules_.predict == CoherentRules::Predict::Never) return Prediction::Delay;
     // New, back in the frustum, or hidden.
     if (memory.visitedFrame + 1 != frameNumber_ || !memory.isVisible) return Prediction::Delay;
@@ -149,12 +149,16 @@ CoherentStrategy::Prediction CoherentStrategy::predict(const Visit& visit, const
     if (memory.isStop || !rules_.doesWeighError) {
         return isFine(visit, memory.bias) ? Prediction::Stop : Prediction::Refine;
     }
-    return mayRise(visit) ? Prediction::Delay : Prediction::Refine;
+    visit.isRise = mayRise(visit);
+    return visit.isRise ? Prediction::Delay : Prediction::Refine;
 }
 
 // Would the node do in place of its children, by what they answered? A hidden child weighs nothing;
-// one that was out of the frustum does not count.
+// one that was out of the frustum does not count. What its own answer has refused is not tried
+// again from the same place: while a node waits, its children hide nothing, what is behind them
+// shows, and a still view would come and go with every second frame.
 bool CoherentStrategy::mayRise(const Visit& visit) {
+    if (memory_[visit.node].refusedSsePx == visit.ssePx) return false;
     const NodeRange children = frame_->tree.children(visit.node);
     double biasSum = 0.0;
     uint32_t count = 0;
@@ -207,6 +211,7 @@ void CoherentStrategy::answer(uint32_t index, uint64_t visiblePx) {
     } else if (!memory.isStop && visit.isDrawn) {
         ++frame_->record.rarnNodes;
     }
+    if (!memory.isStop && (visit.isDrawn || visit.isRise)) memory.refusedSsePx = visit.ssePx;
     emit(index);
 }
 

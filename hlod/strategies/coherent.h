@@ -58,6 +58,7 @@ private:
         uint64_t visitedFrame = 0;  // of this strategy
         uint64_t refinedFrame = 0;
         double bias = 1.0;
+        double refusedSsePx = -1.0;  // where it was last tried in place of its children, in vain
         bool isVisible = false;
         bool isStop = false;
     };
@@ -71,6 +72,7 @@ private:
         uint64_t visiblePx = 0;
         QueryTicket ticket;
         Prediction prediction = Prediction::Delay;
+        bool isRise = false;   // delayed because it may do in place of its children
         bool isProbe = false;  // a stand-in is drawn above: tested and asked for, never drawn
         bool isDrawn = false;
     };
@@ -78,7 +80,7 @@ private:
     void push(const Node& node, uint32_t parent, bool isProbe);
     [[nodiscard]] uint32_t pop();
     void visit(uint32_t index);
-    [[nodiscard]] Prediction predict(const Visit& visit, const Memory& memory);
+    [[nodiscard]] Prediction predict(Visit& visit, const Memory& memory);
     [[nodiscard]] bool mayRise(const Visit& visit);
     void ask(uint32_t index);
     void answer(uint32_t index, uint64_t visiblePx);
