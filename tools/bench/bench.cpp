@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -53,6 +54,9 @@ void divide(BenchRun& run) {
                         &run.psnrLuma, &run.psnrCb, &run.psnrCr}) {
         *sum /= truth;
     }
+    const auto reference = static_cast<double>(std::max<size_t>(run.referenceFrames, 1));
+    run.referenceIdDifferences /= reference;
+    run.psnrLumaReference /= reference;
 }
 
 struct NodeHash {
@@ -85,12 +89,21 @@ public:
 
     void forget() { strategy_->forget(); }
 
+    // Each once.
+    void addFaults(const std::vector<std::string>& faults) {
+        for (const std::string& fault : faults) {
+            if (std::find(run_.faults.begin(), run_.faults.end(), fault) == run_.faults.end()) {
+                run_.faults.push_back(fault);
+            }
+        }
+    }
+
     void settle(const hlod::Camera& camera, const viewer::RenderOptions& options) {
         hlod::FrameRecord record = renderer_.render(camera, *strategy_, options);
         const viewer::Picture picture = renderer_.read(record);
         run_.unsettledFrames += !record.isSettled;
         notePeaks(record);
-        for (const std::string& fault : record.faults) addFault(fault);
+        addFaults(record.faults);
         std::vector<bool> isSeen(picture.nodes.size() + 1, false);
         for (const uint32_t ordinal : picture.nodeOrdinals) isSeen[ordinal] = true;
         for (size_t i = 0; i < picture.nodes.size(); ++i) {
@@ -118,8 +131,10 @@ public:
         return record;
     }
 
+    // `leaves` is null in frames that are not held against the leaves.
     void compare(hlod::FrameRecord& record, viewer::Renderer& truth, const hlod::Camera& camera,
-                 const viewer::RenderOptions& options, const viewer::Picture& tauPicture) {
+                 const viewer::RenderOptions& options, const viewer::Picture& tauPicture,
+                 const viewer::Picture* leaves) {
         const viewer::Picture picture = renderer_.read(record);
         hlod::ReplayStrategy replay(renderer_.runner().cut());
         viewer::RenderOptions same = options;
@@ -142,6 +157,7 @@ public:
         run_.worstPsnrLuma =
             run_.truthFrames == 0 ? quality.luma : std::min(run_.worstPsnrLuma, quality.luma);
         ++run_.truthFrames;
+        if (leaves != nullptr) compareWithLeaves(picture, *leaves);
     }
 
     void time(const hlod::Camera& camera, const viewer::RenderOptions& options, bool isLast) {
@@ -166,6 +182,11 @@ public:
     }
 
 private:
+    void compareWithLeaves(const viewer::Picture& picture, const viewer::Picture& leaves) {
+        run_.referenceIdDifferences += static_cast<double>(countDifferentIds(picture, leaves));
+        run_.psnrLumaReference += psnr(picture, leaves).luma;
+        ++run_.referenceFrames;
+    }
     static viewer::RendererOptions options(const BenchPlan& plan,
                                            const BenchConfiguration& configuration) {
         viewer::RendererOptions options = plan.runtime.rendererOptions();
@@ -179,12 +200,6 @@ private:
         run_.gpuBytesPeak = std::max(run_.gpuBytesPeak, record.gpuBytes);
         run_.hostBytesPeak = std::max(run_.hostBytesPeak, record.hostBytes);
     }
-    void addFault(const std::string& fault) {
-        if (std::find(run_.faults.begin(), run_.faults.end(), fault) == run_.faults.end()) {
-            run_.faults.push_back(fault);
-        }
-    }
-
     viewer::Renderer renderer_;
     std::unique_ptr<hlod::Strategy> strategy_;
     BenchRun run_;
@@ -203,6 +218,27 @@ PageBytes pageBytesOf(const ooc::Database& database) {
         [](uint32_t, const std::string&) {});
     return bytes;
 }
+
+// What the contestants' pictures are held against.
+struct Judges {
+    Judges(const BenchPlan& plan, const ooc::Database& database, const cache::PageSource& source)
+        : truth(database.header().lattice, source, roomy()),
+          frustum(hlod::makeStrategy("frustum")) {
+        if (plan.referenceEvery > 0) {
+            leaves.emplace(database.header().lattice, source, plan.runtime.rendererOptions());
+        }
+    }
+    static viewer::RendererOptions roomy() {
+        viewer::RendererOptions options;
+        options.hostBytes = kTruthHostBytes;
+        options.gpuBytes = kTruthGpuBytes;
+        return options;
+    }
+
+    viewer::Renderer truth;
+    std::unique_ptr<hlod::Strategy> frustum;
+    std::optional<viewer::Renderer> leaves;
+};
 
 class Bench {
 public:
@@ -271,23 +307,31 @@ private:
     }
 
     void truth() {
-        viewer::RendererOptions roomy;
-        roomy.hostBytes = kTruthHostBytes;
-        roomy.gpuBytes = kTruthGpuBytes;
-        viewer::Renderer truth(database_.header().lattice, source_, roomy);
-        const auto frustum = hlod::makeStrategy("frustum");
+        Judges judges(plan_, database_, source_);
+        const auto every = static_cast<size_t>(plan_.truthEvery);
         eachFrame([&](size_t i, const hlod::Camera& camera) {
             std::vector<hlod::FrameRecord> records;
             for (auto& contestant : contestants_) {
                 records.push_back(contestant->live(camera, options_));
             }
-            if (i % static_cast<size_t>(plan_.truthEvery) != 0) return;
-            hlod::FrameRecord record = truth.render(camera, *frustum, options_);
-            const viewer::Picture tauPicture = truth.read(record);
-            for (size_t k = 0; k < contestants_.size(); ++k) {
-                contestants_[k]->compare(records[k], truth, camera, options_, tauPicture);
-            }
+            if (i % every == 0) judge(judges, camera, records, i / every);
         });
+    }
+
+    void judge(Judges& judges, const hlod::Camera& camera, std::vector<hlod::FrameRecord>& records,
+               size_t truthFrame) {
+        hlod::FrameRecord record = judges.truth.render(camera, *judges.frustum, options_);
+        const viewer::Picture tauPicture = judges.truth.read(record);
+        std::optional<viewer::Picture> leaves;
+        if (judges.leaves && truthFrame % static_cast<size_t>(plan_.referenceEvery) == 0) {
+            hlod::FrameRecord reference = judges.leaves->renderReference(camera, options_);
+            leaves = judges.leaves->read(reference);
+            for (auto& contestant : contestants_) contestant->addFaults(reference.faults);
+        }
+        for (size_t k = 0; k < contestants_.size(); ++k) {
+            contestants_[k]->compare(records[k], judges.truth, camera, options_, tauPicture,
+                                     leaves ? &*leaves : nullptr);
+        }
     }
 
     void timed() {

@@ -6,7 +6,7 @@
 //   settled  from cold: every frame waits until nothing is missing. Gives bytes_read, and
 //            bytes_exact from the nodes whose pixels are seen.
 //   truth    live, all resident: pictures against the same cut without culling, and against the
-//            cut at tau (what `bool` draws).
+//            cut at tau (what `bool` draws); on demand also against the leaves.
 //   timed    live, all resident, `repeats` times: counters and times. No picture is read.
 #pragma once
 
@@ -38,9 +38,14 @@ struct BenchPlan {
     std::vector<BenchConfiguration> configurations;
     RuntimeOptions runtime;
     int repeats = 3;
-    int truthEvery = 1;  // frames between those whose pixels are compared; 0: none
+    int truthEvery = 1;      // frames between those whose pixels are compared; 0: none
+    int referenceEvery = 0;  // of these, those also held against the leaves; 0: none
     bool doesSettle = true;
     Vec3f worldUp{0, 0, 1};
+    // For reports only.
+    uint64_t modelTriangles = 0, modelNodes = 0, modelBytes = 0;
+    double speed = 1;     // that the paths were taken at
+    std::string command;  // that asked for all this, without folders
 };
 
 // Means over the frames that were looked at.
@@ -64,6 +69,9 @@ struct BenchRun {
     double truthMissingPages = 0;  // wanted and not there: should be 0
     std::vector<double> psnrLumaSeries;
     double psnrLuma = 0, psnrCb = 0, psnrCr = 0, worstPsnrLuma = 0;
+    // Against the leaves, where asked for.
+    size_t referenceFrames = 0;
+    double referenceIdDifferences = 0, psnrLumaReference = 0;
     // From the settled pass.
     uint64_t bytesRead = 0;      // with what joined reads bring along
     uint64_t pageBytesRead = 0;  // without
@@ -78,8 +86,8 @@ struct BenchRun {
                                              const BenchConfiguration& configuration,
                                              Progress& progress);
 
-// {"database":, "machine":, "settings":, "runs": [...], "ratios": [...]}; keys are a contract
-// (docs/bench.md).
+// {"database":, "command":, "machine":, "settings":, "runs": [...], "ratios": [...]}; keys are a
+// contract (docs/bench.md).
 [[nodiscard]] std::string benchToJson(const BenchPlan& plan, const std::vector<BenchRun>& runs,
                                       const std::string& device);
 // One line a run.

@@ -1,10 +1,9 @@
 #include "tools/bench/bench.h"
+#include "tools/bench/ratios.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <numeric>
 #include <thread>
 
 namespace pagoda::tools {
@@ -64,6 +63,9 @@ Json toJson(const BenchRun& run) {
         {"psnr_cb", shown(run.psnrCb)},
         {"psnr_cr", shown(run.psnrCr)},
         {"psnr_luma_worst", shown(run.worstPsnrLuma)},
+        {"reference_frames", run.referenceFrames},
+        {"reference_id_differences", shown(run.referenceIdDifferences)},
+        {"psnr_luma_reference", shown(run.psnrLumaReference)},
     };
     json["frame_ms"] = toJson(run.frameMs);
     json["frame_ms"]["traverse"] = shown(run.traverseMs.median);
@@ -85,66 +87,24 @@ Json toJson(const BenchRun& run) {
     return json;
 }
 
-bool isSameConfiguration(const BenchRun& a, const BenchRun& b) {
-    return a.pathName == b.pathName && a.tauPx == b.tauPx && a.widthPx == b.widthPx &&
-           a.heightPx == b.heightPx && a.queryLatencyFrames == b.queryLatencyFrames;
-}
-
-// Frames of the slowest tenth under `yardstick`, by the mean of its repeats; places in a series.
-std::vector<size_t> hardestPlaces(const BenchRun& yardstick) {
-    const size_t frames = yardstick.frames;
-    std::vector<double> cost(frames, 0.0);
-    for (size_t i = 0; i < yardstick.cpuMsSeries.size(); ++i) {
-        cost[i % frames] += yardstick.cpuMsSeries[i];
-    }
-    std::vector<size_t> order(frames);
-    std::iota(order.begin(), order.end(), size_t{0});
-    std::stable_sort(order.begin(), order.end(),
-                     [&](size_t a, size_t b) { return cost[a] > cost[b]; });
-    order.resize(std::max<size_t>(1, frames / 10));
-    std::vector<size_t> places;
-    for (size_t base = 0; base < yardstick.cpuMsSeries.size(); base += frames) {
-        for (const size_t frame : order) places.push_back(base + frame);
-    }
-    return places;
-}
-
-std::vector<double> pick(const std::vector<double>& series, const std::vector<size_t>& places) {
-    std::vector<double> values;
-    for (const size_t place : places) values.push_back(series[place]);
-    return values;
-}
-
-Json ratioJson(const BenchRun& slow, const BenchRun& fast, const char* frames, const Ratio& ratio) {
-    return {{"path", slow.pathName},
-            {"tau", slow.tauPx},
-            {"width", slow.widthPx},
-            {"height", slow.heightPx},
-            {"query_latency", slow.queryLatencyFrames},
-            {"of", "cpu_ms"},
-            {"numerator", slow.strategy},
-            {"denominator", fast.strategy},
-            {"frames", frames},
-            {"ratio", shown(ratio.value)},
-            {"low", shown(ratio.low)},
-            {"high", shown(ratio.high)},
-            {"pairs", ratio.pairs}};
-}
-
 // CPU time of every strategy over every other one: how many times as fast the other is.
 Json ratiosJson(const std::vector<BenchRun>& runs) {
     Json ratios = Json::array();
-    for (const BenchRun& slow : runs) {
-        for (const BenchRun& fast : runs) {
-            if (&slow == &fast || !isSameConfiguration(slow, fast)) continue;
-            ratios.push_back(
-                ratioJson(slow, fast, "all", ratioOf(slow.cpuMsSeries, fast.cpuMsSeries)));
-            if (slow.strategy != "frustum") continue;
-            const std::vector<size_t> places = hardestPlaces(slow);
-            ratios.push_back(
-                ratioJson(slow, fast, "hardest",
-                          ratioOf(pick(slow.cpuMsSeries, places), pick(fast.cpuMsSeries, places))));
-        }
+    for (const CpuRatio& cpu : cpuRatios(runs)) {
+        const BenchRun& slow = runs[cpu.numerator];
+        ratios.push_back({{"path", slow.pathName},
+                          {"tau", slow.tauPx},
+                          {"width", slow.widthPx},
+                          {"height", slow.heightPx},
+                          {"query_latency", slow.queryLatencyFrames},
+                          {"of", "cpu_ms"},
+                          {"numerator", slow.strategy},
+                          {"denominator", runs[cpu.denominator].strategy},
+                          {"frames", cpu.isHardest ? "hardest" : "all"},
+                          {"ratio", shown(cpu.ratio.value)},
+                          {"low", shown(cpu.ratio.low)},
+                          {"high", shown(cpu.ratio.high)},
+                          {"pairs", cpu.ratio.pairs}});
     }
     return ratios;
 }
@@ -159,13 +119,22 @@ std::string benchToJson(const BenchPlan& plan, const std::vector<BenchRun>& runs
     const std::string name = plan.database.substr(plan.database.find_last_of('/') + 1);
     const Json json = {
         {"database", name},
+        {"model",
+         {{"triangles", plan.modelTriangles},
+          {"nodes", plan.modelNodes},
+          {"bytes", plan.modelBytes}}},
+        {"command", plan.command},
         {"machine", {{"cores", std::thread::hardware_concurrency()}, {"device", device}}},
         {"settings",
          {{"bias", {options.biasS, options.biasT}},
           {"host_budget", plan.runtime.hostBudget},
           {"gpu_budget", plan.runtime.gpuBudget},
+          {"upload_budget", plan.runtime.uploadBudget},
           {"disk", plan.runtime.disk},
-          {"truth_every", plan.truthEvery}}},
+          {"speed", plan.speed},
+          {"repeats", plan.repeats},
+          {"truth_every", plan.truthEvery},
+          {"reference_every", plan.referenceEvery}}},
         {"runs", list},
         {"ratios", ratiosJson(runs)},
     };

@@ -3,6 +3,8 @@
 #include "ooc/base/error.h"
 #include "ooc/base/file.h"
 #include "ooc/store/database.h"
+#include "tools/bench/plots.h"
+#include "tools/bench/report_html.h"
 #include "tools/session.h"
 #include "viewer/gl_context.h"
 
@@ -22,6 +24,7 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   pagoda path plant.pagoda --kind walk --frames 200 -o walk.json
   pagoda bench plant.pagoda --path walk.json --strategy frustum,bool,coh --json r.json --csv r.csv
+  pagoda bench plant.pagoda --path walk.json --tau 1,2,4 --html report.html
   pagoda bench plant.pagoda --path walk.json --strategy coh,hzb --tau 1,2,4 --size 640x480,1024x768
   pagoda bench plant.pagoda --path walk.json --strategy coh --query-latency 0,1,2 --repeats 1
 
@@ -35,9 +38,8 @@ struct Arguments {
     std::vector<std::string> paths, strategies{"frustum", "bool", "coh"}, sizes{"640x480"};
     std::vector<double> taus{1.0};
     std::vector<uint32_t> latencies{0};
-    double speed = 1;
     size_t frames = 0;
-    std::string json, csv;
+    std::string json, csv, html;
     BenchPlan plan;
 };
 
@@ -65,7 +67,7 @@ void parseSize(const std::string& text, BenchConfiguration& configuration) {
 
 hlod::CameraPath readPath(const Arguments& arguments, const std::string& file) {
     hlod::CameraPath path = hlod::parseCameraPath(readText(file), {}, file);
-    if (arguments.speed != 1) path = hlod::atSpeed(path, arguments.speed);
+    if (arguments.plan.speed != 1) path = hlod::atSpeed(path, arguments.plan.speed);
     if (arguments.frames > 0 && path.frames.size() > arguments.frames) {
         path.frames.resize(arguments.frames);
     }
@@ -91,6 +93,50 @@ void addConfigurations(Arguments& arguments) {
     }
 }
 
+// A word as a shell reads it.
+std::string shellWord(const std::string& text) {
+    constexpr const char* kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./,:=+@%-";
+    if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+    std::string quoted = "'";
+    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return quoted + "'";
+}
+
+// The command that makes these numbers again, without the reports it writes. It travels with them,
+// so files are named without folders.
+std::string commandOf(const CLI::App& command) {
+    std::string text = "pagoda bench";
+    for (const CLI::Option* option : command.get_options()) {
+        const std::string name = option->get_name();
+        if (option->count() == 0 || name == "--json" || name == "--csv" || name == "--html") {
+            continue;
+        }
+        std::vector<std::string> values = option->results();
+        if (!name.starts_with("--") || name == "--path") {
+            for (std::string& value : values) {
+                value = std::filesystem::path(value).filename().string();
+            }
+        }
+        if (name.starts_with("--")) text += " " + name;
+        text += " " + shellWord(fmt::format("{}", fmt::join(values, ",")));
+    }
+    return text;
+}
+
+void writeReports(const Arguments& arguments, const std::vector<BenchRun>& runs,
+                  const std::string& device, Progress& progress) {
+    const BenchPlan& plan = arguments.plan;
+    if (!arguments.json.empty()) writeText(arguments.json, benchToJson(plan, runs, device));
+    if (!arguments.csv.empty()) writeText(arguments.csv, benchToCsv(runs));
+    if (arguments.html.empty()) return;
+    const Figures figures = drawFigures(runs);
+    writeText(arguments.html, benchToHtml(plan, runs, device, figures));
+    if (!figures.problem.empty()) {
+        progress.warn(fmt::format("{}: without figures: {}", arguments.html, figures.problem));
+    }
+}
+
 void printTable(const std::vector<BenchRun>& runs) {
     fmt::print(
         "{:<8} {:<12} {:>5} {:>9} {:>3} {:>8} {:>9} {:>8} {:>6} {:>7} {:>8} {:>7} {:>9} {:>8}\n",
@@ -113,6 +159,9 @@ void bench(Arguments& arguments, Session& session) {
     plan.database = arguments.database;
     plan.strategies = arguments.strategies;
     const ooc::Database database = ooc::Database::open(arguments.database);
+    plan.modelTriangles = database.header().triangleCount;
+    plan.modelNodes = database.header().nodeCount;
+    plan.modelBytes = database.header().fileBytes;
     const auto metadata = nlohmann::json::parse(database.metadataJson(), nullptr, false);
     if (metadata.is_object() && metadata.value("up", "") == "y") plan.worldUp = {0, 1, 0};
     const viewer::GlContext context = viewer::GlContext::headless();
@@ -127,10 +176,7 @@ void bench(Arguments& arguments, Session& session) {
         }
     }
     printTable(runs);
-    if (!arguments.json.empty()) {
-        writeText(arguments.json, benchToJson(plan, runs, context.rendererName()));
-    }
-    if (!arguments.csv.empty()) writeText(arguments.csv, benchToCsv(runs));
+    writeReports(arguments, runs, context.rendererName(), *session.progress);
 }
 
 }  // namespace
@@ -155,7 +201,7 @@ void addBenchCommand(CLI::App& app, Session& session) {
     command->add_option("--size", arguments->sizes, "Pictures in pixels, WxH")
         ->delimiter(',')
         ->capture_default_str();
-    command->add_option("--speed", arguments->speed, "Go along the path so many times as fast")
+    command->add_option("--speed", arguments->plan.speed, "Go along the path so many times as fast")
         ->check(CLI::Range(1.0, 1000.0))
         ->capture_default_str();
     command->add_option("--frames", arguments->frames, "The path's first frames only");
@@ -167,8 +213,15 @@ void addBenchCommand(CLI::App& app, Session& session) {
                      "Compare the pixels of every N-th frame; 0: of none")
         ->check(CLI::Range(0, 1000000))
         ->capture_default_str();
+    command
+        ->add_option("--reference-every", arguments->plan.referenceEvery,
+                     "Hold every N-th of these frames against the leaves too; 0: none")
+        ->check(CLI::Range(0, 1000000))
+        ->capture_default_str();
     command->add_option("--json", arguments->json, "Write all numbers as JSON");
     command->add_option("--csv", arguments->csv, "Write one line a run as CSV");
+    command->add_option("--html", arguments->html,
+                        "Write a report with tables and figures (drawn by gnuplot) as one file");
     addRuntimeOptions(*command, arguments->plan.runtime);
     auto* latency = command->get_option("--query-latency");
     command->remove_option(latency);
@@ -178,7 +231,10 @@ void addBenchCommand(CLI::App& app, Session& session) {
         ->delimiter(',')
         ->check(CLI::Range(0u, 64u))
         ->capture_default_str();
-    command->callback([arguments, &session] { bench(*arguments, session); });
+    command->callback([arguments, command, &session] {
+        arguments->plan.command = commandOf(*command);
+        bench(*arguments, session);
+    });
 }
 
 }  // namespace pagoda::tools

@@ -1,0 +1,23 @@
+// report_html.h: a bench as one HTML file that needs nothing else: no links, no scripts, figures as
+// inline SVG. Text that comes from outside (names of files, faults) is escaped.
+#pragma once
+
+#include "tools/bench/bench.h"
+#include "tools/bench/plots.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pagoda::tools {
+
+// docs/bench.md says what the numbers mean. `device` is the renderer's name; figures are those of
+// drawFigures(runs): where they are missing, the page says how to get them.
+[[nodiscard]] std::string benchToHtml(const BenchPlan& plan, const std::vector<BenchRun>& runs,
+                                      const std::string& device, const Figures& figures);
+
+// `text` as it stands in HTML, between tags or in a quoted attribute; other control characters than
+// newlines become spaces.
+[[nodiscard]] std::string escapedHtml(std::string_view text);
+
+}  // namespace pagoda::tools
