@@ -146,6 +146,7 @@ CoherentStrategy::Prediction CoherentStrategy::predict(Visit& visit, const Memor
     if (rules_.predict == CoherentRules::Predict::InOrder) {
         return isFine(visit, lastBias_) ? Prediction::Stop : Prediction::Refine;
     }
+    if (!memory.isStop && hasHiddenChildrenOnly(visit)) return Prediction::Delay;
     if (memory.isStop || !rules_.doesWeighError) {
         return isFine(visit, memory.bias) ? Prediction::Stop : Prediction::Refine;
     }
@@ -155,6 +156,21 @@ CoherentStrategy::Prediction CoherentStrategy::predict(Visit& visit, const Memor
 
 // Would the node do in place of its children, by what they answered? A hidden child weighs nothing;
 // one that was out of the frustum does not count. What its own answer has refused is not tried
+// Its own box was seen and nothing below it: it goes on waiting for its answer. Refined at once,
+// its children would be asked about before what hides them is drawn, be seen, and hidden again when
+// it waits: a still view would never rest.
+bool CoherentStrategy::hasHiddenChildrenOnly(const Visit& visit) {
+    const NodeRange children = frame_->tree.children(visit.node);
+    bool hasHidden = false;
+    for (uint32_t i = 0; i < children.size(); ++i) {
+        const Memory& memory = memory_[children[i]];
+        if (memory.visitedFrame + 1 != frameNumber_) continue;
+        if (memory.isVisible) return false;
+        hasHidden = true;
+    }
+    return hasHidden;
+}
+
 // again from the same place: while a node waits, its children hide nothing, what is behind them
 // shows, and a still view would come and go with every second frame.
 bool CoherentStrategy::mayRise(const Visit& visit) {

@@ -83,6 +83,7 @@ private:
     [[nodiscard]] Prediction predict(Visit& visit, const Memory& memory);
     [[nodiscard]] bool mayRise(const Visit& visit);
     void ask(uint32_t index);
+    [[nodiscard]] bool hasHiddenChildrenOnly(const Visit& visit);
     void answer(uint32_t index, uint64_t visiblePx);
     void seeUnasked(uint32_t index);
     void markVisible(uint32_t index);
