@@ -18,15 +18,26 @@ void FrameCut::clear() {
     zipped_.clear();
     isStandIn_.clear();
     refined_.clear();
-    drawnHash_ = 0;
+    drawnHash_ = toldHash_ = 0;
+}
+
+void FrameCut::tell(const Node& node, uint64_t what) {
+    toldHash_ = spread(toldHash_ ^ (4 * spread(node.record->id.value + node.database) + what));
 }
 
 void FrameCut::refine(const Node& node) {
+    tell(node, 0);
     if ((node.record->flags & ooc::kNodeHasZippers) == 0) return;
     if (refined_.insert(node.page()).second) zipped_.push_back(node);
 }
 
+void FrameCut::hide(const Node& node) {
+    tell(node, 1);
+    hidden_.push_back(node);
+}
+
 void FrameCut::draw(const Node& node, bool isStandIn) {
+    tell(node, isStandIn ? 2 : 3);
     drawn_.push_back(node);
     isStandIn_.push_back(isStandIn);
     drawnHash_ += spread(node.record->id.value + (uint64_t{node.database} << 58));

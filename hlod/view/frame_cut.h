@@ -20,7 +20,7 @@ public:
     // The node's children (or what they refine to) stand for it in this frame.
     void refine(const Node& node);
     void draw(const Node& node, bool isStandIn = false);
-    void hide(const Node& node) { hidden_.push_back(node); }
+    void hide(const Node& node);
 
     // In the order they were drawn. A stand-in may be the ancestor of others.
     [[nodiscard]] std::span<const Node> drawn() const noexcept { return drawn_; }
@@ -33,12 +33,17 @@ public:
     [[nodiscard]] std::span<const Node> zipped() const noexcept { return zipped_; }
     // Of what is drawn, whatever the order: equal for frames that draw the same nodes.
     [[nodiscard]] uint64_t drawnHash() const noexcept { return drawnHash_; }
+    // Of all that was refined, drawn and hidden, in its order: equal for frames in which a strategy
+    // took the same decisions, so that the next one will do the same.
+    [[nodiscard]] uint64_t toldHash() const noexcept { return toldHash_; }
 
 private:
+    void tell(const Node& node, uint64_t what);
+
     std::vector<Node> drawn_, hidden_, zipped_;
     std::vector<uint8_t> isStandIn_;
     std::unordered_set<cache::PageId, cache::PageIdHash> refined_;
-    uint64_t drawnHash_ = 0;
+    uint64_t drawnHash_ = 0, toldHash_ = 0;
 };
 
 }  // namespace pagoda::hlod

@@ -55,7 +55,7 @@ struct FrameRecord {
     double simulatedStallMs = 0;  // of answers that are late by --query-latency and waited for
     double cpuMs = 0;             // of the whole process, all threads
 
-    bool isSettled = false;  // nothing is missing, and the frame before drew the same
+    bool isSettled = false;  // nothing is missing, and the next frame will draw the same
 
     std::vector<std::string> faults;  // one line each: what could not be read
 };

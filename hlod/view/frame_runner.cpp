@@ -13,6 +13,9 @@ namespace {
 
 // Without progress for so many frames, what is missing will not come by waiting.
 constexpr int kStuckFrames = 3;
+// Predictions may come and go for ever while what is drawn is the same: so many frames of it will
+// do. Measured: what changed the picture once more did so within three.
+constexpr int kSteadyFrames = 6;
 // A strategy that still changes its mind when nothing has been missing for so many frames will not
 // come to rest.
 constexpr int kRestlessFrames = 24;
@@ -136,8 +139,12 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
     record.widthPx = camera.widthPx;
     record.heightPx = camera.heightPx;
     account(record, before);
-    const bool isSame = lastCamera_ == camera && lastDrawnHash_ == cut_.drawnHash();
-    record.isSettled = isSame && record.missingPages == 0 && !tauControl_.isMoving();
+    const bool isComplete = record.missingPages == 0 && !tauControl_.isMoving();
+    const bool isSameView = lastCamera_ == camera;
+    const bool drawsTheSame = isSameView && isComplete && lastDrawnHash_ == cut_.drawnHash();
+    framesDrawnTheSame_ = drawsTheSame ? framesDrawnTheSame_ + 1 : 0;
+    record.isSettled =
+        drawsTheSame && (lastToldHash_ == cut_.toldHash() || framesDrawnTheSame_ >= kSteadyFrames);
     lastCamera_ = camera;
     lastDrawnHash_ = cut_.drawnHash();
     return record;
@@ -146,6 +153,7 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
 void FrameRunner::controlTau(const Camera& camera, const FrameOptions& options,
                              const Progress& before) {
     const bool isMissing = streaming_.missing() > 0;
+    lastToldHash_ = cut_.toldHash();
     const bool isIdle = streaming_.requests().sentCount() == 0 && progress() == before;
     framesWithoutProgress_ = isMissing && isIdle ? framesWithoutProgress_ + 1 : 0;
     const bool isStuck = framesWithoutProgress_ >= kStuckFrames;

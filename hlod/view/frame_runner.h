@@ -26,10 +26,11 @@ public:
 
     // One live frame: what is absent has stand-ins, and is asked for.
     FrameRecord run(const Camera& camera, Strategy& strategy, const FrameOptions& options);
-    // Frames of a still camera until nothing is missing and two of them draw the same: the last
-    // one, with the counts of what was loaded by all. `onFrame` is called after each. Throws Error
-    // when not even the root can be drawn for want of memory. A picture that never comes to rest
-    // (which no strategy should allow) ends after kMaxSettleFrames, with isSettled false.
+    // Frames of a still camera until nothing is missing and two of them decide the same, or some
+    // more draw the same: the last one, with the counts of what was loaded by all. `onFrame` is
+    // called after each. Throws Error when not even the root can be drawn for want of memory. A
+    // picture that never comes to rest (which no strategy should allow) ends after
+    // kMaxSettleFrames, with isSettled false.
     FrameRecord settle(const Camera& camera, Strategy& strategy, const FrameOptions& options,
                        const std::function<void(const FrameRecord&)>& onFrame = {});
 
@@ -61,8 +62,8 @@ private:
     FrameCut cut_;
     Box3d sceneBox_;
     std::optional<Camera> lastCamera_;
-    uint64_t lastDrawnHash_ = 0;
-    int framesWithoutProgress_ = 0;
+    uint64_t lastToldHash_ = 0, lastDrawnHash_ = 0;
+    int framesWithoutProgress_ = 0, framesDrawnTheSame_ = 0;
     double frameMs_ = 0.0;  // of the last frame: what a late answer's frame would have taken
 };
 
