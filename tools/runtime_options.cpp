@@ -10,8 +10,12 @@ namespace pagoda::tools {
 
 hlod::StrategyOptions RuntimeOptions::strategyOptions() const {
     hlod::StrategyOptions options;
+    options.caution = caution;
     if (bias.empty()) return options;
-    if (bias == "paper") return {.biasS = 1.0, .biasT = 0.5};
+    if (bias == "paper") {
+        options = {.biasS = 1.0, .biasT = 0.5, .caution = 0.0};
+        return options;
+    }
     char rest = 0;
     if (std::sscanf(bias.c_str(), "%lf,%lf%c", &options.biasS, &options.biasT, &rest) != 2 ||
         !(options.biasS >= 0 && options.biasS <= 1) ||
@@ -41,7 +45,12 @@ std::vector<std::string> strategyNames() {
 void addRuntimeOptions(CLI::App& command, RuntimeOptions& options) {
     command.add_option("--bias", options.bias,
                        "How much hidden parts lower the error of a node: S,T in [0, 1], or paper "
-                       "(1,0.5) (default: 0.5,0.5)");
+                       "(1,0.5, without --caution) (default: 0.5,0.5)");
+    command
+        .add_option("--caution", options.caution,
+                    "Wait for the answer where an error is foretold within this share of tau")
+        ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str();
     command
         .add_option("--query-latency", options.queryLatencyFrames,
                     "Frames that answers of occlusion queries are late, simulated")

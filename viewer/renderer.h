@@ -18,7 +18,7 @@ namespace pagoda::viewer {
 
 struct RenderOptions {
     double tauPx = 1.0;  // 0: the leaves
-    Background background;
+    Background background{};
     Vec3f worldUp{0, 1, 0};  // where the sky is
 };
 

@@ -148,14 +148,14 @@ CoherentStrategy::Prediction CoherentStrategy::predict(Visit& visit, const Memor
     }
     if (!memory.isStop && hasHiddenChildrenOnly(visit)) return Prediction::Delay;
     if (memory.isStop || !rules_.doesWeighError) {
-        return isFine(visit, memory.bias) ? Prediction::Stop : Prediction::Refine;
+        if (!isFine(visit, memory.bias)) return Prediction::Refine;
+        const bool isSure = isFine(visit, memory.bias * (1.0 + rules_.caution));
+        return isSure || !rules_.doesWeighError ? Prediction::Stop : Prediction::Delay;
     }
     visit.isRise = mayRise(visit);
     return visit.isRise ? Prediction::Delay : Prediction::Refine;
 }
 
-// Would the node do in place of its children, by what they answered? A hidden child weighs nothing;
-// one that was out of the frustum does not count. What its own answer has refused is not tried
 // Its own box was seen and nothing below it: it goes on waiting for its answer. Refined at once,
 // its children would be asked about before what hides them is drawn, be seen, and hidden again when
 // it waits: a still view would never rest.
@@ -171,6 +171,8 @@ bool CoherentStrategy::hasHiddenChildrenOnly(const Visit& visit) {
     return hasHidden;
 }
 
+// Would the node do in place of its children, by what they answered? A hidden child weighs nothing;
+// one that was out of the frustum does not count. What its own answer has refused is not tried
 // again from the same place: while a node waits, its children hide nothing, what is behind them
 // shows, and a still view would come and go with every second frame.
 bool CoherentStrategy::mayRise(const Visit& visit) {
@@ -319,6 +321,7 @@ namespace {
 std::unique_ptr<Strategy> make(CoherentRules rules, const StrategyOptions& options) {
     rules.biasS = options.biasS;
     rules.biasT = options.biasT;
+    rules.caution = options.caution;
     return std::make_unique<CoherentStrategy>(rules);
 }
 

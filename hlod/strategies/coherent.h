@@ -28,6 +28,7 @@ struct CoherentRules {
     bool doesWaitAtOnce = false;
     bool usesPyramid = false;  // answers from depths drawn before the first wait, not from queries
     double biasS = 0.5, biasT = 0.5;
+    double caution = 0.0;  // StrategyOptions
 };
 
 // Answers from a depth pyramid, which is built when the first one is waited for: every box of the
@@ -82,8 +83,8 @@ private:
     void visit(uint32_t index);
     [[nodiscard]] Prediction predict(Visit& visit, const Memory& memory);
     [[nodiscard]] bool mayRise(const Visit& visit);
-    void ask(uint32_t index);
     [[nodiscard]] bool hasHiddenChildrenOnly(const Visit& visit);
+    void ask(uint32_t index);
     void answer(uint32_t index, uint64_t visiblePx);
     void seeUnasked(uint32_t index);
     void markVisible(uint32_t index);

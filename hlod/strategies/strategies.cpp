@@ -13,6 +13,7 @@ constexpr std::array kStrategies = {
     StrategyRow{"coh", "coherent HLOD culling: refine, stop or delay", &makeCohStrategy},
     StrategyRow{"hzb", "as coh, boxes tested against a depth pyramid, no queries",
                 &makeHzbStrategy},
+    StrategyRow{"auto", "whichever of coh, hzb and frustum pays here", &makeAutoStrategy},
 };
 
 }  // namespace

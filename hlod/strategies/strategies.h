@@ -13,6 +13,10 @@ struct StrategyOptions {
     // The sigmoid bias (paper 004): s blends linear (0) and sigmoid (1), t is its turnover: smaller
     // keeps more detail. Both in [0, 1]. The paper's are s = 1, t = 0.5.
     double biasS = 0.5, biasT = 0.5;
+    // Beyond the paper: a stop that is foretold within this share of the allowed error waits for
+    // its answer (delay), since it would often turn out wrong and be drawn in vain (RARN). 0 is
+    // the paper's.
+    double caution = 0.3;
 };
 
 struct StrategyRow {
@@ -33,5 +37,6 @@ struct StrategyRow {
 [[nodiscard]] std::unique_ptr<Strategy> makeSimpStrategy(const StrategyOptions& options);
 [[nodiscard]] std::unique_ptr<Strategy> makeCohStrategy(const StrategyOptions& options);
 [[nodiscard]] std::unique_ptr<Strategy> makeHzbStrategy(const StrategyOptions& options);
+[[nodiscard]] std::unique_ptr<Strategy> makeAutoStrategy(const StrategyOptions& options);
 
 }  // namespace pagoda::hlod

@@ -8,6 +8,7 @@ std::string frameRecordToJson(const FrameRecord& record) {
     const PredictionCounts& predictions = record.predictions;
     const nlohmann::ordered_json json = {
         {"strategy", record.strategy},
+        {"choice", record.choice},
         {"frame", record.frameIndex},
         {"width", record.widthPx},
         {"height", record.heightPx},

@@ -18,6 +18,7 @@ struct PredictionCounts {
 
 struct FrameRecord {
     std::string strategy;
+    std::string choice;  // of a strategy that chooses: what, and why (strategy)
     uint64_t frameIndex = 0;
     int widthPx = 0, heightPx = 0;
     double tauPx = 0;           // asked for

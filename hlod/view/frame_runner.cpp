@@ -120,7 +120,14 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
     device_.beginFrame(view);
     late_.beginFrame(device_.counting());
     Sink sink(*this, record);
-    FrameContext frame{view, tree_, record.effectiveTauPx, record.frameIndex, sink, record};
+    FrameContext frame{view,
+                       tree_,
+                       record.effectiveTauPx,
+                       record.frameIndex,
+                       sink,
+                       record,
+                       lastRecord_ ? &*lastRecord_ : nullptr,
+                       lastCamera_ == camera};
     const double traverseBeginMs = nowMs();
     strategy.traverse(frame);
     const double traversedMs = nowMs();
@@ -146,14 +153,15 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
     record.isSettled =
         drawsTheSame && (lastToldHash_ == cut_.toldHash() || framesDrawnTheSame_ >= kSteadyFrames);
     lastCamera_ = camera;
+    lastToldHash_ = cut_.toldHash();
     lastDrawnHash_ = cut_.drawnHash();
+    lastRecord_ = record;
     return record;
 }
 
 void FrameRunner::controlTau(const Camera& camera, const FrameOptions& options,
                              const Progress& before) {
     const bool isMissing = streaming_.missing() > 0;
-    lastToldHash_ = cut_.toldHash();
     const bool isIdle = streaming_.requests().sentCount() == 0 && progress() == before;
     framesWithoutProgress_ = isMissing && isIdle ? framesWithoutProgress_ + 1 : 0;
     const bool isStuck = framesWithoutProgress_ >= kStuckFrames;

@@ -62,6 +62,7 @@ private:
     FrameCut cut_;
     Box3d sceneBox_;
     std::optional<Camera> lastCamera_;
+    std::optional<FrameRecord> lastRecord_;
     uint64_t lastToldHash_ = 0, lastDrawnHash_ = 0;
     int framesWithoutProgress_ = 0, framesDrawnTheSame_ = 0;
     double frameMs_ = 0.0;  // of the last frame: what a late answer's frame would have taken

@@ -50,7 +50,9 @@ struct FrameContext {
     double tauPx;  // effective; 0 asks for every leaf
     uint64_t frameIndex;
     FrameSink& sink;
-    FrameRecord& record;  // what a strategy counts is marked there
+    FrameRecord& record;                      // what a strategy counts is marked there
+    const FrameRecord* lastRecord = nullptr;  // of the frame before, with its times
+    bool isSameView = false;                  // as in the frame before
 };
 
 class Strategy {
