@@ -57,6 +57,8 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 if(PAGODA_VIEWER)
   # Loaded by libEGL at run time, so no linker knows of it.
   set(CPACK_DEBIAN_PACKAGE_RECOMMENDS libegl1 libegl-mesa0 libgl1-mesa-dri)
+  # A program that `pagoda bench --html` calls for its figures.
+  list(APPEND CPACK_DEBIAN_PACKAGE_RECOMMENDS gnuplot-nox)
   list(JOIN CPACK_DEBIAN_PACKAGE_RECOMMENDS ", " CPACK_DEBIAN_PACKAGE_RECOMMENDS)
 endif()
 include(CPack)

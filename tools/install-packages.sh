@@ -4,7 +4,8 @@
 #   tools/install-packages.sh [GROUP...]      default: build
 #
 # build     compiler, libraries and a software GL: enough for tools/demo.sh
-# test      GoogleTest, Embree (rays), Python (a second reader)
+# test      GoogleTest, Embree (rays), Python (a second reader), gnuplot
+# report    gnuplot, for the figures of `pagoda bench --html`
 # lint      clang-format, clang-tidy
 # bench     Google Benchmark
 # fuzz      clang with libFuzzer and the sanitizers' run time
@@ -18,12 +19,13 @@ packages_of() {
         libcli11-dev libdraco-dev libegl-dev libepoxy-dev libfast-float-dev libfmt-dev libglm-dev \
         libmeshoptimizer-dev libpng-dev libspdlog-dev libtinygltf-dev libwebp-dev libxxhash-dev \
         nlohmann-json3-dev libegl1 libegl-mesa0 libgl1-mesa-dri ;;
-    test) echo libgtest-dev libgmock-dev libembree-dev python3 ;;
+    test) echo libgtest-dev libgmock-dev libembree-dev python3 gnuplot-nox ;;
+    report) echo gnuplot-nox ;;
     lint) echo clang-format clang-tidy git ;;
     bench) echo libbenchmark-dev ;;
     fuzz) echo clang libclang-rt-14-dev ;;
     topology) echo libopenmesh-dev ;;
-    *) echo "install-packages.sh: no group '$1'; groups: build test lint bench fuzz topology" >&2
+    *) echo "install-packages.sh: no group '$1'; groups: build test report lint bench fuzz topology" >&2
        return 2 ;;
     esac
 }

@@ -59,6 +59,10 @@ void replaceAll(std::string& text, std::string_view from, const std::string& to)
 constexpr const char* kDefaults[] = {" stroke-linecap=\"butt\"", " stroke-linejoin=\"miter\"",
                                      " stroke-width=\"1.00\"", "\t"};
 
+// Names that gnuplot gives twice in drawings of two panels, tooltips of them, and empty groups.
+constexpr const char* kNoise[] = {" id=\"gnuplot_plot_[^\"]*\"", "<title>[^<]*</title>",
+                                  "<g [^>]*>\\s*</g>\n"};
+
 // The exit status as waitpid() gives it; throws Error when gnuplot cannot be started.
 int runGnuplot(const fs::path& script, const fs::path& messages) {
     posix_spawn_file_actions_t actions;
@@ -123,7 +127,8 @@ std::string Gnuplot::svg(const std::string& commands, Size size, const std::stri
         text.erase(0, text.find("<svg"));
         for (const char* name : kIds) replaceAll(text, name, id + name);
         for (const char* name : kDefaults) replaceAll(text, name, "");
-        return std::regex_replace(text, std::regex("<g [^>]*>\\s*</g>\n"), "");
+        for (const char* pattern : kNoise) text = std::regex_replace(text, std::regex(pattern), "");
+        return text;
     } catch (const std::exception& error) {
         problem_ = error.what();
         return {};
