@@ -16,6 +16,8 @@ constexpr int kStuckFrames = 3;
 // Predictions may come and go for ever while what is drawn is the same: so many frames of it will
 // do. Measured: what changed the picture once more did so within three.
 constexpr int kSteadyFrames = 6;
+// Above what any picture's pixels give.
+constexpr double kRootPriority = 1e18;
 // A strategy that still changes its mind when nothing has been missing for so many frames will not
 // come to rest.
 constexpr int kRestlessFrames = 24;
@@ -113,7 +115,10 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
     record.tauPx = options.tauPx;
     record.effectiveTauPx = tauControl_.effectiveTauPx(options.tauPx);
     cut_.clear();
-    if (const auto root = tree_.root()) sceneBox_ = *root->boxModel;
+    if (const auto root = tree_.root()) {
+        sceneBox_ = *root->boxModel;
+        wantRoot(*root);
+    }
     const View view(camera, sceneBox_);
     record.streamMs = nowMs() - beginMs;
 
@@ -160,6 +165,12 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
 }
 
 void FrameRunner::controlTau(const Camera& camera, const FrameOptions& options,
+// Always there, whatever is drawn: what turns visible in a new view has a stand-in then.
+void FrameRunner::wantRoot(const Node& root) {
+    static_cast<void>(
+        streaming_.residency().want({root.page(), *root.record, kRootPriority}, false));
+}
+
                              const Progress& before) {
     const bool isMissing = streaming_.missing() > 0;
     const bool isIdle = streaming_.requests().sentCount() == 0 && progress() == before;

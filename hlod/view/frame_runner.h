@@ -52,6 +52,7 @@ private:
     };
     [[nodiscard]] Progress progress();
     void controlTau(const Camera& camera, const FrameOptions& options, const Progress& before);
+    void wantRoot(const Node& root);
     void account(FrameRecord& record, const cache::Residency::Counters& before);
 
     cache::Streaming& streaming_;

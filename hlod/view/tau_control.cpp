@@ -9,6 +9,7 @@ namespace {
 constexpr double kFullShare = 0.95;   // of the budget: pages come in sizes, gaps are not all of use
 constexpr double kLeastTauPx = 0.25;  // tau 0 is raised from here
 constexpr double kLeastStep = 1.02, kGreatestStep = 1.5;
+constexpr double kHurryStep = 1.1;
 constexpr double kDownStep = 0.9;
 constexpr double kForgetStep = 0.98;  // a frame, of what was too fine, while the camera moves
 constexpr double kMaxTauPx = 1e7;
@@ -30,8 +31,9 @@ void TauControl::update(const Frame& frame) {
     if (!frame.isSameView) tooFine_ *= kForgetStep;
     if (!fits_ || frame.isStuck) {
         raise(frame);
-    } else if (raised_ > 0.0) {
-        lower(frame);
+    } else {
+        lastRaisedBytes_ = UINT64_MAX;
+        if (raised_ > 0.0) lower(frame);
     }
 }
 
@@ -39,8 +41,14 @@ void TauControl::update(const Frame& frame) {
 void TauControl::raise(const Frame& frame) {
     const double effective = effectiveTauPx(frame.tauPx);
     tooFine_ = std::max(tooFine_, effective);
-    if (effective >= kMaxTauPx) return;  // not even the coarsest nodes fit
-    const double step = std::clamp(std::sqrt(share(frame)), kLeastStep, kGreatestStep);
+    if (effective >= kMaxTauPx) {  // the coarsest nodes: at most as they are
+        fits_ = frame.demandBytes <= frame.budgetBytes;
+        return;
+    }
+    // Where a step did nothing, the next is longer: errors jump from level to level.
+    hurry_ = frame.demandBytes >= lastRaisedBytes_ ? hurry_ * kHurryStep : 1.0;
+    lastRaisedBytes_ = frame.demandBytes;
+    const double step = std::clamp(std::sqrt(share(frame)) * hurry_, kLeastStep, kGreatestStep);
     raised_ = std::max(effective, kLeastTauPx) * step;
     isMoving_ = true;
 }

@@ -30,6 +30,8 @@ private:
 
     double raised_ = 0.0;   // 0: nothing has been raised
     double tooFine_ = 0.0;  // the greatest tau that is known not to fit from here
+    double hurry_ = 1.0;
+    uint64_t lastRaisedBytes_ = UINT64_MAX;  // demanded when it was raised in the frame before
     bool isMoving_ = false, fits_ = true;
 };
 
