@@ -127,6 +127,7 @@ std::string benchToJson(const BenchPlan& plan, const std::vector<BenchRun>& runs
         {"machine", {{"cores", std::thread::hardware_concurrency()}, {"device", device}}},
         {"settings",
          {{"bias", {options.biasS, options.biasT}},
+          {"caution", options.caution},
           {"host_budget", plan.runtime.hostBudget},
           {"gpu_budget", plan.runtime.gpuBudget},
           {"upload_budget", plan.runtime.uploadBudget},

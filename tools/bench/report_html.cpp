@@ -86,16 +86,17 @@ std::string summary(const BenchPlan& plan, const std::vector<BenchRun>& runs,
                                      formatBytes(plan.modelBytes)));
     html += term("Machine", fmt::format("{} cores; {}", std::thread::hardware_concurrency(),
                                         escapedHtml(device)));
-    html += term(
-        "Settings",
-        fmt::format("bias {:g},{:g}; budgets: host {}, GPU {}, upload {}; disk {}; paths at {:g}x "
-                    "speed; {} timed {}; pixels compared every {} frames",
-                    options.biasS, options.biasT, escapedHtml(plan.runtime.hostBudget),
-                    escapedHtml(plan.runtime.gpuBudget),
-                    plan.runtime.uploadBudget.empty() ? "without bound"
-                                                      : escapedHtml(plan.runtime.uploadBudget),
-                    escapedHtml(plan.runtime.disk), plan.speed, plan.repeats,
-                    plan.repeats == 1 ? "pass" : "passes", plan.truthEvery));
+    html +=
+        term("Settings",
+             fmt::format("bias {:g},{:g}, caution {:g}; budgets: host {}, GPU {}, upload {}; disk "
+                         "{}; paths at {:g}x "
+                         "speed; {} timed {}; pixels compared every {} frames",
+                         options.biasS, options.biasT, options.caution,
+                         escapedHtml(plan.runtime.hostBudget), escapedHtml(plan.runtime.gpuBudget),
+                         plan.runtime.uploadBudget.empty() ? "without bound"
+                                                           : escapedHtml(plan.runtime.uploadBudget),
+                         escapedHtml(plan.runtime.disk), plan.speed, plan.repeats,
+                         plan.repeats == 1 ? "pass" : "passes", plan.truthEvery));
     html += term("Command", "<code>" + escapedHtml(plan.command) + "</code>");
     std::string unsettled;
     for (const BenchRun& run : runs) {
