@@ -151,8 +151,7 @@ bool View::intersectsFrustum(const Box3d& box) const {
 
 double View::ssePx(double errorModelUnits, const Box3d& box) const {
     if (!(errorModelUnits > 0.0)) return 0.0;
-    const double eyeDistance = distanceTo(box);
-    if (!(eyeDistance > 0.0)) return std::numeric_limits<double>::infinity();
+    const double eyeDistance = std::max(distanceTo(box), near_);
     return errorModelUnits * camera_.heightPx / (2.0 * tanY_ * eyeDistance);
 }
 

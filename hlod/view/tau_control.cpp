@@ -9,10 +9,12 @@ namespace {
 constexpr double kFullShare = 0.95;   // of the budget: pages come in sizes, gaps are not all of use
 constexpr double kLeastTauPx = 0.25;  // tau 0 is raised from here
 constexpr double kLeastStep = 1.02, kGreatestStep = 1.5;
+constexpr double kStuckStep = 1.3;  // found after several frames of waiting each time
 constexpr double kHurryStep = 1.1;
 constexpr double kDownStep = 0.9;
 constexpr double kForgetStep = 0.98;  // a frame, of what was too fine, while the camera moves
-constexpr double kMaxTauPx = 1e7;
+// Above what any node's error is at the near plane, a millionth of the scene away.
+constexpr double kMaxTauPx = 1e12;
 
 double share(const TauControl::Frame& frame) {
     return static_cast<double>(frame.demandBytes) /
@@ -48,7 +50,8 @@ void TauControl::raise(const Frame& frame) {
     // Where a step did nothing, the next is longer: errors jump from level to level.
     hurry_ = frame.demandBytes >= lastRaisedBytes_ ? hurry_ * kHurryStep : 1.0;
     lastRaisedBytes_ = frame.demandBytes;
-    const double step = std::clamp(std::sqrt(share(frame)) * hurry_, kLeastStep, kGreatestStep);
+    const double leastStep = frame.isStuck ? kStuckStep : kLeastStep;
+    const double step = std::clamp(std::sqrt(share(frame)) * hurry_, leastStep, kGreatestStep);
     raised_ = std::max(effective, kLeastTauPx) * step;
     isMoving_ = true;
 }

@@ -35,7 +35,9 @@ TEST(Camera, ScreenSpaceErrorFollowsTheFormula) {
     EXPECT_NEAR(view.ssePx(0.02, {{-1, -1, -2}, {1, 1, 2}}), 1.0, 1e-12);
     // Beside the box: nearest point (1, 0, 10) is 0 away in y and z, so 3 away along x.
     EXPECT_NEAR(view.ssePx(0.03, {{3, -1, 9}, {4, 1, 11}}), 0.03 * 800 / (2 * 3), 1e-12);
-    EXPECT_EQ(view.ssePx(0.02, {{-1, -1, 9}, {1, 1, 11}}), std::numeric_limits<double>::infinity());
+    // Around the eye: as at the near plane.
+    EXPECT_NEAR(view.ssePx(0.02, {{-1, -1, 9}, {1, 1, 11}}),
+                0.02 * 800 / (2 * view.nearModelUnits()), 1e-9);
     EXPECT_EQ(view.ssePx(0.0, {{-1, -1, 9}, {1, 1, 11}}), 0.0);
 }
 
