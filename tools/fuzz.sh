@@ -26,11 +26,11 @@ fuzz_one() {
     mkdir -p "$here" "build-fuzz/grown/$target"
     regressions=tests/fuzz/corpus/regressions/$target
     [ -d "$regressions" ] || regressions=
-    # The first folder takes what is found new; 512 MiB and 10 s an input are far above any sound
+    # The first folder takes what is found new; 512 MiB and 25 s an input are far above any sound
     # run. Leaks count too.
     # shellcheck disable=SC2086
     PAGODA_FUZZ_TARGET=$target ./build-fuzz/tests/fuzz/pagoda_fuzz \
-        -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=512 \
+        -max_total_time="$seconds" -timeout=25 -rss_limit_mb=1024 -malloc_limit_mb=512 \
         -max_len=65536 -print_final_stats=1 -artifact_prefix="$here/" \
         "build-fuzz/grown/$target" "tests/fuzz/corpus/$target" $regressions \
         >"$here/log" 2>&1 || true
