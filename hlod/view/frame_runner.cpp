@@ -28,229 +28,208 @@ constexpr int kRestlessFrames = 24;
 constexpr double kMaxExcess = 4.0;
 
 double nowMs() {
-  return std::chrono::duration<double, std::milli>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
+    return std::chrono::duration<double, std::milli>(
+               std::chrono::steady_clock::now().time_since_epoch())
+        .count();
 }
 
 double processCpuMs() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) * 1e3 +
-         static_cast<double>(time.tv_nsec) * 1e-6;
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) * 1e3 + static_cast<double>(time.tv_nsec) * 1e-6;
 }
 
-} // namespace
+}  // namespace
 
 double requestPriority(double visiblePx, double excessError) {
-  return visiblePx * std::clamp(excessError, 1.0, kMaxExcess);
+    return visiblePx * std::clamp(excessError, 1.0, kMaxExcess);
 }
 
 // Hears the strategy: pages go to the cache, draws to the device, all of it
 // into the cut.
 class FrameRunner::Sink final : public FrameSink {
 public:
-  Sink(FrameRunner &runner, FrameRecord &record)
-      : runner_(runner), residency_(runner.streaming_.residency()),
-        record_(record) {}
+    Sink(FrameRunner& runner, FrameRecord& record)
+        : runner_(runner), residency_(runner.streaming_.residency()), record_(record) {}
 
-  cache::PageState state(const Node &node) const override {
-    return residency_.state(node.page());
-  }
-  cache::PageState want(const Node &node, double priority, Use use) override {
-    return residency_.want({node.page(), *node.record, priority},
-                           use == Use::StandIn);
-  }
-  void keep(const Node &node) override { residency_.keep(node.page()); }
-  void refine(const Node &node) override {
-    runner_.cut_.refine(node);
-    // A refined node is not drawn, but its zippers to unrefined neighbours are.
-    if ((node.record->flags & ooc::kNodeHasZippers) != 0)
-      want(node, 0.0, Use::Cut);
-  }
-  void draw(const Node &node, Use use) override {
-    runner_.cut_.draw(node, use == Use::StandIn);
-    record_.standIns += use == Use::StandIn;
-    runner_.device_.draw(node);
-  }
-  void hide(const Node &node) override {
-    runner_.cut_.hide(node);
-    ++record_.hiddenNodes;
-  }
-  CountingVisibility *counting() override {
-    return runner_.device_.counting() != nullptr ? &runner_.late_ : nullptr;
-  }
-  PyramidVisibility *pyramid() override { return runner_.device_.pyramid(); }
+    cache::PageState state(const Node& node) const override {
+        return residency_.state(node.page());
+    }
+    cache::PageState want(const Node& node, double priority, Use use) override {
+        return residency_.want({node.page(), *node.record, priority}, use == Use::StandIn);
+    }
+    void keep(const Node& node) override { residency_.keep(node.page()); }
+    void refine(const Node& node) override {
+        runner_.cut_.refine(node);
+        // A refined node is not drawn, but its zippers to unrefined neighbours are.
+        if ((node.record->flags & ooc::kNodeHasZippers) != 0) want(node, 0.0, Use::Cut);
+    }
+    void draw(const Node& node, Use use) override {
+        runner_.cut_.draw(node, use == Use::StandIn);
+        record_.standIns += use == Use::StandIn;
+        runner_.device_.draw(node);
+    }
+    void hide(const Node& node) override {
+        runner_.cut_.hide(node);
+        ++record_.hiddenNodes;
+    }
+    CountingVisibility* counting() override {
+        return runner_.device_.counting() != nullptr ? &runner_.late_ : nullptr;
+    }
+    PyramidVisibility* pyramid() override { return runner_.device_.pyramid(); }
 
 private:
-  FrameRunner &runner_;
-  cache::Residency &residency_;
-  FrameRecord &record_;
+    FrameRunner& runner_;
+    cache::Residency& residency_;
+    FrameRecord& record_;
 };
 
-FrameRunner::FrameRunner(cache::Streaming &streaming, NodeTree &tree,
-                         Device &device, uint32_t queryLatencyFrames)
-    : streaming_(streaming), tree_(tree), device_(device),
-      late_(queryLatencyFrames) {}
+FrameRunner::FrameRunner(cache::Streaming& streaming, NodeTree& tree, Device& device,
+                         uint32_t queryLatencyFrames)
+    : streaming_(streaming), tree_(tree), device_(device), late_(queryLatencyFrames) {
+}
 
 Node FrameRunner::root() {
-  while (true) {
-    streaming_.beginFrame();
-    const auto root = tree_.root();
-    streaming_.endFrame();
-    if (root) {
-      sceneBox_ = *root->boxModel;
-      return *root;
+    while (true) {
+        streaming_.beginFrame();
+        const auto root = tree_.root();
+        streaming_.endFrame();
+        if (root) {
+            sceneBox_ = *root->boxModel;
+            return *root;
+        }
+        static_cast<void>(streaming_.waitForArrival());
     }
-    static_cast<void>(streaming_.waitForArrival());
-  }
 }
 
 FrameRunner::Progress FrameRunner::progress() {
-  const cache::Residency::Counters &counters =
-      streaming_.residency().counters();
-  return {streaming_.requests().counters().sent,
-          counters.loadedPages + counters.failedPages, counters.uploadedPages,
-          streaming_.index().loadedBlocks()};
+    const cache::Residency::Counters& counters = streaming_.residency().counters();
+    return {streaming_.requests().counters().sent, counters.loadedPages + counters.failedPages,
+            counters.uploadedPages, streaming_.index().loadedBlocks()};
 }
 
-FrameRecord FrameRunner::run(const Camera &camera, Strategy &strategy,
-                             const FrameOptions &options) {
-  const double beginMs = nowMs(), beginCpuMs = processCpuMs();
-  const cache::Residency::Counters before = streaming_.residency().counters();
-  const Progress progressBefore = progress();
-  FrameRecord record;
-  streaming_.beginFrame();
-  record.frameIndex = streaming_.frameIndex();
-  record.tauPx = options.tauPx;
-  record.effectiveTauPx = tauControl_.effectiveTauPx(options.tauPx);
-  cut_.clear();
-  if (const auto root = tree_.root()) {
-    sceneBox_ = *root->boxModel;
-    wantRoot(*root);
-  }
-  const View view(camera, sceneBox_);
-  record.streamMs = nowMs() - beginMs;
+FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
+                             const FrameOptions& options) {
+    const double beginMs = nowMs(), beginCpuMs = processCpuMs();
+    const cache::Residency::Counters before = streaming_.residency().counters();
+    const Progress progressBefore = progress();
+    FrameRecord record;
+    streaming_.beginFrame();
+    record.frameIndex = streaming_.frameIndex();
+    record.tauPx = options.tauPx;
+    record.effectiveTauPx = tauControl_.effectiveTauPx(options.tauPx);
+    cut_.clear();
+    if (const auto root = tree_.root()) {
+        sceneBox_ = *root->boxModel;
+        wantRoot(*root);
+    }
+    const View view(camera, sceneBox_);
+    record.streamMs = nowMs() - beginMs;
 
-  device_.beginFrame(view);
-  late_.beginFrame(device_.counting());
-  Sink sink(*this, record);
-  FrameContext frame{view,
-                     tree_,
-                     record.effectiveTauPx,
-                     record.frameIndex,
-                     sink,
-                     record,
-                     lastRecord_ ? &*lastRecord_ : nullptr,
-                     lastCamera_ == camera};
-  const double traverseBeginMs = nowMs();
-  strategy.traverse(frame);
-  const double traversedMs = nowMs();
-  device_.endFrame(cut_, record);
-  // What the device did while it was being told is its own.
-  record.traverseMs =
-      traversedMs - traverseBeginMs - record.queryMs - record.drawMs;
-  const double drawnMs = nowMs();
-  record.drawMs += drawnMs - traversedMs;
+    device_.beginFrame(view);
+    late_.beginFrame(device_.counting());
+    Sink sink(*this, record);
+    FrameContext frame{view,
+                       tree_,
+                       record.effectiveTauPx,
+                       record.frameIndex,
+                       sink,
+                       record,
+                       lastRecord_ ? &*lastRecord_ : nullptr,
+                       lastCamera_ == camera};
+    const double traverseBeginMs = nowMs();
+    strategy.traverse(frame);
+    const double traversedMs = nowMs();
+    device_.endFrame(cut_, record);
+    // What the device did while it was being told is its own.
+    record.traverseMs = traversedMs - traverseBeginMs - record.queryMs - record.drawMs;
+    const double drawnMs = nowMs();
+    record.drawMs += drawnMs - traversedMs;
 
-  controlTau(camera, options, progressBefore);
-  streaming_.endFrame(!tauControl_.fits());
-  record.streamMs += nowMs() - drawnMs;
-  record.simulatedStallMs =
-      static_cast<double>(late_.stalledFrames()) * frameMs_;
-  frameMs_ = record.frameMs = nowMs() - beginMs;
-  record.cpuMs = processCpuMs() - beginCpuMs;
-  record.widthPx = camera.widthPx;
-  record.heightPx = camera.heightPx;
-  account(record, before);
-  const bool isComplete = record.missingPages == 0 && !tauControl_.isMoving();
-  const bool isSameView = lastCamera_ == camera;
-  const bool drawsTheSame =
-      isSameView && isComplete && lastDrawnHash_ == cut_.drawnHash();
-  framesDrawnTheSame_ = drawsTheSame ? framesDrawnTheSame_ + 1 : 0;
-  // A stand-in may hide what it stands for, which is not asked for then: until
-  // the next frame.
-  const bool decidesTheSame =
-      lastToldHash_ == cut_.toldHash() && record.standIns == 0;
-  record.isSettled =
-      drawsTheSame && (decidesTheSame || framesDrawnTheSame_ >= kSteadyFrames);
-  lastCamera_ = camera;
-  lastToldHash_ = cut_.toldHash();
-  lastDrawnHash_ = cut_.drawnHash();
-  lastRecord_ = record;
-  return record;
+    controlTau(camera, options, progressBefore);
+    streaming_.endFrame(!tauControl_.fits());
+    record.streamMs += nowMs() - drawnMs;
+    record.simulatedStallMs = static_cast<double>(late_.stalledFrames()) * frameMs_;
+    frameMs_ = record.frameMs = nowMs() - beginMs;
+    record.cpuMs = processCpuMs() - beginCpuMs;
+    record.widthPx = camera.widthPx;
+    record.heightPx = camera.heightPx;
+    account(record, before);
+    const bool isComplete = record.missingPages == 0 && !tauControl_.isMoving();
+    const bool isSameView = lastCamera_ == camera;
+    const bool drawsTheSame = isSameView && isComplete && lastDrawnHash_ == cut_.drawnHash();
+    framesDrawnTheSame_ = drawsTheSame ? framesDrawnTheSame_ + 1 : 0;
+    // A stand-in may hide what it stands for, which is not asked for then: until
+    // the next frame.
+    const bool decidesTheSame = lastToldHash_ == cut_.toldHash() && record.standIns == 0;
+    record.isSettled = drawsTheSame && (decidesTheSame || framesDrawnTheSame_ >= kSteadyFrames);
+    lastCamera_ = camera;
+    lastToldHash_ = cut_.toldHash();
+    lastDrawnHash_ = cut_.drawnHash();
+    lastRecord_ = record;
+    return record;
 }
 
 // Always there, whatever is drawn: what turns visible in a new view has a
 // stand-in then.
-void FrameRunner::wantRoot(const Node &root) {
-  static_cast<void>(streaming_.residency().want(
-      {root.page(), *root.record, kRootPriority}, false));
+void FrameRunner::wantRoot(const Node& root) {
+    static_cast<void>(
+        streaming_.residency().want({root.page(), *root.record, kRootPriority}, false));
 }
 
-void FrameRunner::controlTau(const Camera &camera, const FrameOptions &options,
-                             const Progress &before) {
-  const bool isMissing = streaming_.missing() > 0;
-  const bool isIdle =
-      streaming_.requests().sentCount() == 0 && progress() == before;
-  framesWithoutProgress_ = isMissing && isIdle ? framesWithoutProgress_ + 1 : 0;
-  const bool isStuck = framesWithoutProgress_ >= kStuckFrames;
-  if (isStuck)
-    framesWithoutProgress_ = 0;
-  const cache::Residency &residency = streaming_.residency();
-  tauControl_.update({options.tauPx, residency.demandBytes(),
-                      residency.gpuBudgetBytes(), isStuck,
-                      lastCamera_ == camera});
+void FrameRunner::controlTau(const Camera& camera, const FrameOptions& options,
+                             const Progress& before) {
+    const bool isMissing = streaming_.missing() > 0;
+    const bool isIdle = streaming_.requests().sentCount() == 0 && progress() == before;
+    framesWithoutProgress_ = isMissing && isIdle ? framesWithoutProgress_ + 1 : 0;
+    const bool isStuck = framesWithoutProgress_ >= kStuckFrames;
+    if (isStuck) framesWithoutProgress_ = 0;
+    const cache::Residency& residency = streaming_.residency();
+    tauControl_.update({options.tauPx, residency.demandBytes(), residency.gpuBudgetBytes(), isStuck,
+                        lastCamera_ == camera});
 }
 
-void FrameRunner::account(FrameRecord &record,
-                          const cache::Residency::Counters &before) {
-  const cache::Residency &residency = streaming_.residency();
-  const cache::Residency::Counters &after = residency.counters();
-  record.missingPages = streaming_.missing();
-  record.demandBytes = residency.demandBytes();
-  record.loadedPages = after.loadedPages - before.loadedPages;
-  record.bytesRead = after.bytesRead - before.bytesRead;
-  record.bytesUploaded = after.bytesUploaded - before.bytesUploaded;
-  record.evictedPages = after.evictedPages - before.evictedPages;
-  record.reloadedPages = after.reloadedPages - before.reloadedPages;
-  record.indexBlocks = streaming_.index().blockCount();
-  record.indexBytes = streaming_.indexBytes();
-  record.gpuBytes = residency.gpuUsedBytes();
-  record.hostBytes = streaming_.hostBytes();
-  for (const cache::BlockFault &fault : streaming_.index().faults()) {
-    record.faults.push_back(
-        fmt::format("index block {}: {}", fault.block, fault.what));
-  }
-  for (const cache::PageFault &fault : residency.faults()) {
-    record.faults.push_back(
-        fmt::format("page of node {:#x}: {}", fault.id.node.value, fault.what));
-  }
+void FrameRunner::account(FrameRecord& record, const cache::Residency::Counters& before) {
+    const cache::Residency& residency = streaming_.residency();
+    const cache::Residency::Counters& after = residency.counters();
+    record.missingPages = streaming_.missing();
+    record.demandBytes = residency.demandBytes();
+    record.loadedPages = after.loadedPages - before.loadedPages;
+    record.bytesRead = after.bytesRead - before.bytesRead;
+    record.bytesUploaded = after.bytesUploaded - before.bytesUploaded;
+    record.evictedPages = after.evictedPages - before.evictedPages;
+    record.reloadedPages = after.reloadedPages - before.reloadedPages;
+    record.indexBlocks = streaming_.index().blockCount();
+    record.indexBytes = streaming_.indexBytes();
+    record.gpuBytes = residency.gpuUsedBytes();
+    record.hostBytes = streaming_.hostBytes();
+    for (const cache::BlockFault& fault : streaming_.index().faults()) {
+        record.faults.push_back(fmt::format("index block {}: {}", fault.block, fault.what));
+    }
+    for (const cache::PageFault& fault : residency.faults()) {
+        record.faults.push_back(
+            fmt::format("page of node {:#x}: {}", fault.id.node.value, fault.what));
+    }
 }
 
-FrameRecord
-FrameRunner::settle(const Camera &camera, Strategy &strategy,
-                    const FrameOptions &options,
-                    const std::function<void(const FrameRecord &)> &onFrame) {
-  FrameRecord record;
-  const cache::Residency::Counters before = streaming_.residency().counters();
-  int completeFrames = 0;
-  for (int i = 0; i < kMaxSettleFrames && completeFrames < kRestlessFrames;
-       ++i) {
-    record = run(camera, strategy, options);
-    if (onFrame)
-      onFrame(record);
-    if (record.isSettled)
-      break;
-    // Nothing on its way: either the next frame asks for more, or tau control
-    // must act.
-    if (record.missingPages > 0)
-      static_cast<void>(streaming_.waitForArrival());
-    completeFrames = record.missingPages > 0 ? 0 : completeFrames + 1;
-  }
-  record.faults.clear();
-  account(record, before);
-  return record;
+FrameRecord FrameRunner::settle(const Camera& camera, Strategy& strategy,
+                                const FrameOptions& options,
+                                const std::function<void(const FrameRecord&)>& onFrame) {
+    FrameRecord record;
+    const cache::Residency::Counters before = streaming_.residency().counters();
+    int completeFrames = 0;
+    for (int i = 0; i < kMaxSettleFrames && completeFrames < kRestlessFrames; ++i) {
+        record = run(camera, strategy, options);
+        if (onFrame) onFrame(record);
+        if (record.isSettled) break;
+        // Nothing on its way: either the next frame asks for more, or tau control
+        // must act.
+        if (record.missingPages > 0) static_cast<void>(streaming_.waitForArrival());
+        completeFrames = record.missingPages > 0 ? 0 : completeFrames + 1;
+    }
+    record.faults.clear();
+    account(record, before);
+    return record;
 }
 
-} // namespace pagoda::hlod
+}  // namespace pagoda::hlod
