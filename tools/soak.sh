@@ -13,7 +13,7 @@ cd "$(dirname "$0")/.."
 
 soak=${PAGODA_SOAK:-build-release/tests/soak/pagoda_soak}
 if [ -z "${PAGODA_SOAK:-}" ]; then
-    tools/install-packages.sh build tests
+    tools/install-packages.sh build test
     cmake --preset release >/dev/null
     cmake --build build-release --target pagoda_soak >/dev/null
 fi
