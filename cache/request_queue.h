@@ -43,7 +43,7 @@ public:
     struct Limits {
         size_t readsInFlight = 16;
         size_t prefetchBelowReads = 4;    // in flight: above, reads stay free for what is wanted
-        uint64_t joinGapBytes = 8 << 10;  // bytes read in vain rather than a second read
+        uint64_t joinGapBytes = 2 << 10;  // bytes read in vain rather than a second read
         uint64_t readBytes = 1 << 20;     // of one joined read
         uint32_t attempts = 4;
         double firstPauseS = 0.02;  // doubles with each failure

@@ -43,7 +43,7 @@ void CoherentStrategy::traverse(FrameContext& frame) {
     const auto root = frame.tree.root();
     if (!root) return;
     memory_.fit(frame.tree);
-    push(*root, kNoParent, false);
+    push(*root, kNoParent, 0);
     const bool doesPoll = counting_ != nullptr && counting_->isPollFree();
     while (!queue_.empty() || !pending_.empty()) {
         while (!pending_.empty()) {
@@ -68,12 +68,12 @@ bool CoherentStrategy::isLater(uint32_t a, uint32_t b) const {
     return p.distance != q.distance ? p.distance > q.distance : p.node.page() > q.node.page();
 }
 
-void CoherentStrategy::push(const Node& node, uint32_t parent, bool isProbe) {
+void CoherentStrategy::push(const Node& node, uint32_t parent, uint32_t probeLevel) {
     Visit visit;
     visit.node = node;
     visit.parent = parent;
     visit.distance = static_cast<float>(frame_->view.distanceTo(*node.boxModel));
-    visit.isProbe = isProbe;
+    visit.probeLevel = probeLevel;
     if (parent != kNoParent && frame_->tauPx > 0.0) {
         visit.excess = visits_[parent].ssePx / frame_->tauPx;
     }
@@ -214,7 +214,7 @@ void CoherentStrategy::answer(uint32_t index, uint64_t visiblePx) {
     visit.visiblePx = visiblePx;
     if (visiblePx == 0) {
         ++(wasStop ? counts.stopHidden : counts.delayHidden);
-        if (!wasStop && !visit.isProbe) frame_->sink.hide(visit.node);
+        if (!wasStop && visit.probeLevel == 0) frame_->sink.hide(visit.node);
         return;
     }
     markVisible(index);
@@ -225,7 +225,7 @@ void CoherentStrategy::answer(uint32_t index, uint64_t visiblePx) {
     memory.isStop = isFine(visit, memory.bias);
     if (!wasStop) {
         ++counts.delayVisible;
-        if (memory.isStop && !visit.isProbe) ++frame_->record.delayedNodes;
+        if (memory.isStop && visit.probeLevel == 0) ++frame_->record.delayedNodes;
     } else if (!memory.isStop && visit.isDrawn) {
         ++frame_->record.rarnNodes;
     }
@@ -253,7 +253,7 @@ void CoherentStrategy::draw(uint32_t index) {
     Visit& visit = visits_[index];
     if (visit.isDrawn) return;
     const cache::PageState state = frame_->sink.want(visit.node, priorityOf(visit), Use::Cut);
-    if (visit.isProbe) return;
+    if (visit.probeLevel > 0) return;
     if (state != cache::PageState::Resident) return standInFor(index);
     visit.isDrawn = true;
     frame_->sink.draw(visit.node, Use::Cut);
@@ -264,17 +264,19 @@ void CoherentStrategy::refine(uint32_t index) {
     const NodeRange children =
         frame_->tree.children(visits_[index].node, priorityOf(visits_[index]));
     const bool canBe = canRefine(memory, children);
-    if (canBe && !visits_[index].isProbe) {
+    const uint32_t probeLevel = visits_[index].probeLevel;
+    if (probeLevel > 0) {
+        frame_->sink.want(visits_[index].node, priorityOf(visits_[index]), Use::StandIn);
+        if (probeLevel >= frame_->probeLevels) return;
+    } else if (canBe) {
         memory.refinedFrame = frameNumber_;
         frame_->sink.refine(visits_[index].node);
         frame_->sink.keep(visits_[index].node);
-    } else if (visits_[index].isProbe) {
-        frame_->sink.want(visits_[index].node, priorityOf(visits_[index]), Use::StandIn);
     } else if (!drawStandIn(index)) {
         standInFor(index);
     }
-    const bool isProbe = visits_[index].isProbe || !canBe;
-    for (uint32_t i = 0; i < children.size(); ++i) push(children[i], index, isProbe);
+    const uint32_t below = probeLevel > 0 || !canBe ? probeLevel + 1 : 0;
+    for (uint32_t i = 0; i < children.size(); ++i) push(children[i], index, below);
 }
 
 // A node may be left for its children when all that are not known to be hidden are there, or when

@@ -73,12 +73,14 @@ private:
         uint64_t visiblePx = 0;
         QueryTicket ticket;
         Prediction prediction = Prediction::Delay;
-        bool isRise = false;   // delayed because it may do in place of its children
-        bool isProbe = false;  // a stand-in is drawn above: tested and asked for, never drawn
+        bool isRise = false;  // delayed because it may do in place of its children
+        // Levels below the node that is drawn as a stand-in: tested and asked for, never drawn. 0:
+        // there is none above.
+        uint32_t probeLevel = 0;
         bool isDrawn = false;
     };
 
-    void push(const Node& node, uint32_t parent, bool isProbe);
+    void push(const Node& node, uint32_t parent, uint32_t probeLevel);
     [[nodiscard]] uint32_t pop();
     void visit(uint32_t index);
     [[nodiscard]] Prediction predict(Visit& visit, const Memory& memory);

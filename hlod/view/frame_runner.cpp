@@ -11,20 +11,17 @@
 namespace pagoda::hlod {
 namespace {
 
-// Without progress for so many frames, what is missing will not come by
-// waiting.
+// Without progress for so many frames, what is missing will not come by waiting.
 constexpr int kStuckFrames = 3;
-// Predictions may come and go for ever while what is drawn is the same: so many
-// frames of it will do. Measured: what changed the picture once more did so
-// within three.
+// Predictions may come and go for ever while what is drawn is the same: so many frames of it will
+// do. Measured: what changed the picture once more did so within three.
 constexpr int kSteadyFrames = 6;
 // Above what any picture's pixels give.
 constexpr double kRootPriority = 1e18;
-// A strategy that still changes its mind when nothing has been missing for so
-// many frames will not come to rest.
+// A strategy that still changes its mind when nothing has been missing for so many frames will not
+// come to rest.
 constexpr int kRestlessFrames = 24;
-// Visible pixels x excess error, at most so many times the pixels (measured:
-// docs/decisions.md).
+// Visible pixels x excess error, at most so many times the pixels (measured: docs/decisions.md).
 constexpr double kMaxExcess = 4.0;
 
 double nowMs() {
@@ -45,8 +42,7 @@ double requestPriority(double visiblePx, double excessError) {
     return visiblePx * std::clamp(excessError, 1.0, kMaxExcess);
 }
 
-// Hears the strategy: pages go to the cache, draws to the device, all of it
-// into the cut.
+// Hears the strategy: pages go to the cache, draws to the device, all of it into the cut.
 class FrameRunner::Sink final : public FrameSink {
 public:
     Sink(FrameRunner& runner, FrameRecord& record)
@@ -136,7 +132,8 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
                        sink,
                        record,
                        lastRecord_ ? &*lastRecord_ : nullptr,
-                       lastCamera_ == camera};
+                       lastCamera_ == camera,
+                       options.probeLevels};
     const double traverseBeginMs = nowMs();
     strategy.traverse(frame);
     const double traversedMs = nowMs();
@@ -159,8 +156,7 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
     const bool isSameView = lastCamera_ == camera;
     const bool drawsTheSame = isSameView && isComplete && lastDrawnHash_ == cut_.drawnHash();
     framesDrawnTheSame_ = drawsTheSame ? framesDrawnTheSame_ + 1 : 0;
-    // A stand-in may hide what it stands for, which is not asked for then: until
-    // the next frame.
+    // A stand-in may hide what it stands for, which is not asked for then: until the next frame.
     const bool decidesTheSame = lastToldHash_ == cut_.toldHash() && record.standIns == 0;
     record.isSettled = drawsTheSame && (decidesTheSame || framesDrawnTheSame_ >= kSteadyFrames);
     lastCamera_ = camera;
@@ -170,8 +166,7 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
     return record;
 }
 
-// Always there, whatever is drawn: what turns visible in a new view has a
-// stand-in then.
+// Always there, whatever is drawn: what turns visible in a new view has a stand-in then.
 void FrameRunner::wantRoot(const Node& root) {
     static_cast<void>(
         streaming_.residency().want({root.page(), *root.record, kRootPriority}, false));
@@ -219,11 +214,12 @@ FrameRecord FrameRunner::settle(const Camera& camera, Strategy& strategy,
     const cache::Residency::Counters before = streaming_.residency().counters();
     int completeFrames = 0;
     for (int i = 0; i < kMaxSettleFrames && completeFrames < kRestlessFrames; ++i) {
-        record = run(camera, strategy, options);
+        // Who waits anyway reads least: what is nearer is there before what it may hide is asked
+        // for.
+        record = run(camera, strategy, {options.tauPx, 1});
         if (onFrame) onFrame(record);
         if (record.isSettled) break;
-        // Nothing on its way: either the next frame asks for more, or tau control
-        // must act.
+        // Nothing on its way: either the next frame asks for more, or tau control must act.
         if (record.missingPages > 0) static_cast<void>(streaming_.waitForArrival());
         completeFrames = record.missingPages > 0 ? 0 : completeFrames + 1;
     }

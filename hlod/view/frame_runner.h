@@ -15,7 +15,8 @@
 namespace pagoda::hlod {
 
 struct FrameOptions {
-    double tauPx = 1.0;  // 0: the leaves
+    double tauPx = 1.0;                 // 0: the leaves
+    uint32_t probeLevels = UINT32_MAX;  // FrameContext
 };
 
 class FrameRunner {
@@ -51,8 +52,8 @@ private:
         [[nodiscard]] bool operator==(const Progress&) const = default;
     };
     [[nodiscard]] Progress progress();
-    void controlTau(const Camera& camera, const FrameOptions& options, const Progress& before);
     void wantRoot(const Node& root);
+    void controlTau(const Camera& camera, const FrameOptions& options, const Progress& before);
     void account(FrameRecord& record, const cache::Residency::Counters& before);
 
     cache::Streaming& streaming_;

@@ -53,6 +53,9 @@ struct FrameContext {
     FrameRecord& record;                      // what a strategy counts is marked there
     const FrameRecord* lastRecord = nullptr;  // of the frame before, with its times
     bool isSameView = false;                  // as in the frame before
+    // How far below a stand-in absent nodes are asked for. All the way is soonest sharp; one level
+    // reads least, since what is nearer hides more of what is behind it than its stand-in does.
+    uint32_t probeLevels = UINT32_MAX;
 };
 
 class Strategy {
