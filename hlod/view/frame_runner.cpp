@@ -132,8 +132,7 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
                        sink,
                        record,
                        lastRecord_ ? &*lastRecord_ : nullptr,
-                       lastCamera_ == camera,
-                       options.probeLevels};
+                       lastCamera_ == camera};
     const double traverseBeginMs = nowMs();
     strategy.traverse(frame);
     const double traversedMs = nowMs();
@@ -214,9 +213,7 @@ FrameRecord FrameRunner::settle(const Camera& camera, Strategy& strategy,
     const cache::Residency::Counters before = streaming_.residency().counters();
     int completeFrames = 0;
     for (int i = 0; i < kMaxSettleFrames && completeFrames < kRestlessFrames; ++i) {
-        // Who waits anyway reads least: what is nearer is there before what it may hide is asked
-        // for.
-        record = run(camera, strategy, {options.tauPx, 1});
+        record = run(camera, strategy, options);
         if (onFrame) onFrame(record);
         if (record.isSettled) break;
         // Nothing on its way: either the next frame asks for more, or tau control must act.
