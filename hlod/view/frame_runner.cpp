@@ -132,7 +132,8 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
                        sink,
                        record,
                        lastRecord_ ? &*lastRecord_ : nullptr,
-                       lastCamera_ == camera};
+                       lastCamera_ == camera,
+                       options.probeLevels};
     const double traverseBeginMs = nowMs();
     strategy.traverse(frame);
     const double traversedMs = nowMs();
@@ -213,7 +214,9 @@ FrameRecord FrameRunner::settle(const Camera& camera, Strategy& strategy,
     const cache::Residency::Counters before = streaming_.residency().counters();
     int completeFrames = 0;
     for (int i = 0; i < kMaxSettleFrames && completeFrames < kRestlessFrames; ++i) {
-        record = run(camera, strategy, options);
+        // Who waits anyway reads least: what is nearer is there before what it may hide is asked
+        // for.
+        record = run(camera, strategy, {options.tauPx, 1});
         if (onFrame) onFrame(record);
         if (record.isSettled) break;
         // Nothing on its way: either the next frame asks for more, or tau control must act.
