@@ -108,7 +108,6 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
                              const FrameOptions& options) {
     const double beginMs = nowMs(), beginCpuMs = processCpuMs();
     const cache::Residency::Counters before = streaming_.residency().counters();
-    const Progress progressBefore = progress();
     FrameRecord record;
     streaming_.beginFrame();
     record.frameIndex = streaming_.frameIndex();
@@ -143,7 +142,7 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
     const double drawnMs = nowMs();
     record.drawMs += drawnMs - traversedMs;
 
-    controlTau(camera, options, progressBefore);
+    controlTau(camera, options);
     streaming_.endFrame(!tauControl_.fits());
     record.streamMs += nowMs() - drawnMs;
     record.simulatedStallMs = static_cast<double>(late_.stalledFrames()) * frameMs_;
@@ -172,10 +171,12 @@ void FrameRunner::wantRoot(const Node& root) {
         streaming_.residency().want({root.page(), *root.record, kRootPriority}, false));
 }
 
-void FrameRunner::controlTau(const Camera& camera, const FrameOptions& options,
-                             const Progress& before) {
+void FrameRunner::controlTau(const Camera& camera, const FrameOptions& options) {
     const bool isMissing = streaming_.missing() > 0;
-    const bool isIdle = streaming_.requests().sentCount() == 0 && progress() == before;
+    // Since the last frame's look: what arrives between frames counts.
+    const Progress now = progress();
+    const bool isIdle = streaming_.requests().sentCount() == 0 && now == lastProgress_;
+    lastProgress_ = now;
     framesWithoutProgress_ = isMissing && isIdle ? framesWithoutProgress_ + 1 : 0;
     const bool isStuck = framesWithoutProgress_ >= kStuckFrames;
     if (isStuck) framesWithoutProgress_ = 0;

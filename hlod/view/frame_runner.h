@@ -53,7 +53,7 @@ private:
     };
     [[nodiscard]] Progress progress();
     void wantRoot(const Node& root);
-    void controlTau(const Camera& camera, const FrameOptions& options, const Progress& before);
+    void controlTau(const Camera& camera, const FrameOptions& options);
     void account(FrameRecord& record, const cache::Residency::Counters& before);
 
     cache::Streaming& streaming_;
@@ -64,6 +64,7 @@ private:
     FrameCut cut_;
     Box3d sceneBox_;
     std::optional<Camera> lastCamera_;
+    Progress lastProgress_;
     std::optional<FrameRecord> lastRecord_;
     uint64_t lastToldHash_ = 0, lastDrawnHash_ = 0;
     int framesWithoutProgress_ = 0, framesDrawnTheSame_ = 0;
