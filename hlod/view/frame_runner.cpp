@@ -214,12 +214,14 @@ FrameRecord FrameRunner::settle(const Camera& camera, Strategy& strategy,
     FrameRecord record;
     const cache::Residency::Counters before = streaming_.residency().counters();
     int completeFrames = 0;
+    // Who waits anyway reads least: what is nearer is there before what it may hide is asked for.
+    // A live frame must find nothing to do afterwards.
+    uint32_t probeLevels = 1;
     for (int i = 0; i < kMaxSettleFrames && completeFrames < kRestlessFrames; ++i) {
-        // Who waits anyway reads least: what is nearer is there before what it may hide is asked
-        // for.
-        record = run(camera, strategy, {options.tauPx, 1});
+        record = run(camera, strategy, {options.tauPx, probeLevels});
         if (onFrame) onFrame(record);
-        if (record.isSettled) break;
+        if (record.isSettled && probeLevels > 1) break;
+        if (record.isSettled) probeLevels = options.probeLevels;
         // Nothing on its way: either the next frame asks for more, or tau control must act.
         if (record.missingPages > 0) static_cast<void>(streaming_.waitForArrival());
         completeFrames = record.missingPages > 0 ? 0 : completeFrames + 1;
