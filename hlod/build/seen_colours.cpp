@@ -107,7 +107,9 @@ void addSeen(const SummedImage& model, std::span<const uint32_t> standIn, int re
              std::vector<MeanColour>& means) {
     for (int y = 0; y < resolution; ++y) {
         for (int x = 0; x < resolution; ++x) {
-            const uint32_t number = standIn[static_cast<size_t>(y * resolution + x)];
+            const uint32_t number =
+                standIn[static_cast<size_t>(y) * static_cast<size_t>(resolution) +
+                        static_cast<size_t>(x)];
             if (number == UINT32_MAX) continue;
             const ColourSum seen = model.around(x, y);
             if (seen.pixels == 0) continue;

@@ -56,6 +56,7 @@ std::vector<SoupTriangle> mostVisible(std::vector<SoupTriangle> triangles, uint3
     order.resize(count);
     std::sort(order.begin(), order.end());
     std::vector<SoupTriangle> chosen;
+    chosen.reserve(order.size());
     for (const uint32_t i : order) chosen.push_back(triangles[i]);
     return chosen;
 }
@@ -76,6 +77,7 @@ std::vector<SoupTriangle> largest(std::span<const SoupTriangle> triangles, uint3
     order.resize(std::min<size_t>(order.size(), count));
     std::sort(order.begin(), order.end());
     std::vector<SoupTriangle> chosen;
+    chosen.reserve(order.size());
     for (const uint32_t i : order) chosen.push_back(triangles[i]);
     return chosen;
 }

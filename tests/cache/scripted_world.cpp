@@ -105,7 +105,7 @@ void World::end() {
     requests.send([this](const Request& request) { return residency.admit(request); });
 }
 
-void World::frames(int count, std::vector<const ooc::NodeRecord*> wanted) {
+void World::frames(int count, const std::vector<const ooc::NodeRecord*>& wanted) {
     for (int i = 0; i < count; ++i) {
         begin();
         double priority = static_cast<double>(wanted.size());

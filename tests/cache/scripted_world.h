@@ -104,7 +104,7 @@ struct World {
     }
     void end();  // requests are sent
     // Whole frames that want these, the first most urgent.
-    void frames(int count, std::vector<const ooc::NodeRecord*> wanted);
+    void frames(int count, const std::vector<const ooc::NodeRecord*>& wanted);
     [[nodiscard]] bool isResident(const ooc::NodeRecord& node) const {
         return residency.isResident(pageOf(node));
     }
