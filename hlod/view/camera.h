@@ -63,8 +63,8 @@ public:
     // plane: never for a box that reaches the picture.
     [[nodiscard]] bool intersectsFrustum(const Box3d& box) const;
     // Pixels that `errorModelUnits` can span at the box's nearest point: error * height /
-    // (2 tan(fovy/2) * distance of eye to box). At most what it is at the near plane: nothing nearer
-    // is drawn, and around the eye, too, some tau must be coarse enough.
+    // (2 tan(fovy/2) * distance of eye to box). At most what it is at the near plane: nothing
+    // nearer is drawn, and around the eye, too, some tau must be coarse enough.
     [[nodiscard]] double ssePx(double errorModelUnits, const Box3d& box) const;
     // Distance of the eye to the box's nearest point, 0 inside.
     [[nodiscard]] double distanceTo(const Box3d& box) const;
