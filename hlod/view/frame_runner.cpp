@@ -121,6 +121,7 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
     const View view(camera, sceneBox_);
     record.streamMs = nowMs() - beginMs;
 
+    const double traverseBeginMs = nowMs();
     device_.beginFrame(view);
     late_.beginFrame(device_.counting());
     Sink sink(*this, record);
@@ -133,12 +134,12 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
                        lastRecord_ ? &*lastRecord_ : nullptr,
                        lastCamera_ == camera,
                        options.probeLevels};
-    const double traverseBeginMs = nowMs();
     strategy.traverse(frame);
     const double traversedMs = nowMs();
     device_.endFrame(cut_, record);
-    // What the device did while it was being told is its own.
-    record.traverseMs = traversedMs - traverseBeginMs - record.queryMs - record.drawMs;
+    // What the device did until here is its own.
+    record.traverseMs =
+        std::max(0.0, traversedMs - traverseBeginMs - record.queryMs - record.drawMs);
     const double drawnMs = nowMs();
     record.drawMs += drawnMs - traversedMs;
 
