@@ -135,6 +135,7 @@ void RequestQueue::sendRead(Entry& best, const Admit& admit) {
     }
     ++counters_.reads;
     counters_.bytesRead += end - begin;
+    if (best.request.key.isBlock) counters_.blockBytesRead += end - begin;
     sendItems(low, high);
 }
 

@@ -221,7 +221,7 @@ FrameRecord FrameRunner::settle(const Camera& camera, Strategy& strategy,
     for (int i = 0; i < kMaxSettleFrames && completeFrames < kRestlessFrames; ++i) {
         record = run(camera, strategy, {options.tauPx, probeLevels});
         if (onFrame) onFrame(record);
-        if (record.isSettled && probeLevels > 1) break;
+        if (record.isSettled && probeLevels == options.probeLevels) break;
         if (record.isSettled) probeLevels = options.probeLevels;
         // Nothing on its way: either the next frame asks for more, or tau control must act.
         if (record.missingPages > 0) static_cast<void>(streaming_.waitForArrival());
