@@ -159,6 +159,8 @@ TEST(RequestQueue, NeverJoinsAcrossDatabasesKindsOrUrgency) {
     elsewhere.key.database = 1;
     queue.frame({page(1, 5, 0), elsewhere, block(3, 5, 20), prefetched(page(4, 5, 30))});
     EXPECT_EQ(queue.reads(), (Reads{{3}, {1}, {2}, {4}}));
+    EXPECT_EQ(queue.requests.counters().bytesRead, 40u);
+    EXPECT_EQ(queue.requests.counters().blockBytesRead, 10u);  // of the index alone
     queue.collect();
     for (const Request& neighbour : {elsewhere, block(2, 4, 10), prefetched(page(2, 4, 10))}) {
         Queue pair({.readsInFlight = kMany, .joinGapBytes = 50, .readBytes = 1000});
