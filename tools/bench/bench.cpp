@@ -5,6 +5,7 @@
 #include "hlod/strategies/replay.h"
 #include "ooc/base/progress.h"
 #include "ooc/store/database.h"
+#include "tools/bench/live.h"
 #include "tools/bench/truth.h"
 
 #include <fmt/format.h>
@@ -88,6 +89,7 @@ public:
     }
 
     void forget() { strategy_->forget(); }
+    void setLive(LivePass pass) { run_.live = std::move(pass); }
 
     // Each once.
     void addFaults(const std::vector<std::string>& faults) {
@@ -258,14 +260,18 @@ public:
 
     std::vector<BenchRun> run() {
         const size_t frames = configuration_.path.frames.size();
-        const size_t passes = size_t{plan_.doesSettle} + size_t{plan_.truthEvery > 0} + 1 +
+        const bool isResident = plan_.truthEvery > 0 || plan_.repeats > 0;
+        const bool isLive = !plan_.runtime.rendererOptions().disk.isAsIs();
+        const size_t passes = size_t{plan_.doesSettle} + (isLive ? contestants_.size() : 0) +
+                              size_t{plan_.truthEvery > 0} + size_t{isResident} +
                               static_cast<size_t>(plan_.repeats);
         progress_.beginStage(
             fmt::format("{}, tau {:g}, {}x{}", configuration_.pathName, configuration_.tauPx,
                         configuration_.widthPx, configuration_.heightPx),
             frames * passes, "frames");
         if (plan_.doesSettle) settled();
-        preload();
+        if (isLive) live();
+        if (isResident) preload();
         if (plan_.truthEvery > 0) truth();
         timed();
         std::vector<BenchRun> runs;
@@ -296,6 +302,13 @@ private:
         });
         const PageBytes bytes = pageBytesOf(database_);
         for (auto& contestant : contestants_) contestant->endSettled(bytes);
+    }
+
+    void live() {
+        for (size_t i = 0; i < contestants_.size(); ++i) {
+            contestants_[i]->setLive(
+                runLive(plan_, configuration_, plan_.strategies[i], database_, progress_));
+        }
     }
 
     // Culling is compared as if the whole model were there: a child that was never looked at must

@@ -8,6 +8,8 @@
 //   truth    live, all resident: pictures against the same cut without culling, and against the
 //            cut at tau (what `bool` draws); on demand also against the leaves.
 //   timed    live, all resident, `repeats` times: counters and times. No picture is read.
+// With a simulated disk there is one more, of a renderer of its own from cold caches:
+//   live     on a virtual clock, so that what is not there in time shows (fallback pixels).
 #pragma once
 
 #include "hlod/view/camera_path.h"
@@ -48,6 +50,18 @@ struct BenchPlan {
     std::string command;  // that asked for all this, without folders
 };
 
+// A path seen live, from a simulated disk (live.h). Sums over its frames.
+struct LivePass {
+    size_t frames = 0;
+    uint64_t coveredPixels = 0, fallbackPixels = 0;
+    uint64_t fallbackFrames = 0;    // with any fallback pixel
+    double worstFallbackShare = 0;  // of a frame's covered pixels
+    uint64_t missingPages = 0;
+    uint64_t pageBytesRead = 0;
+    uint64_t prefetchedBytes = 0, usedPrefetchedBytes = 0;
+    std::vector<double> fallbackShareSeries;
+};
+
 // Means over the frames that were looked at.
 struct BenchRun {
     std::string strategy, pathName;
@@ -78,6 +92,7 @@ struct BenchRun {
     uint64_t bytesExact = 0;     // pages with a pixel, and their ancestors
     uint64_t unsettledFrames = 0;
     uint64_t gpuBytesPeak = 0, hostBytesPeak = 0;
+    LivePass live;  // without frames when the disk is as it is
     std::vector<std::string> faults;
 };
 

@@ -30,6 +30,24 @@ Json toJson(const std::vector<double>& values) {
     return list;
 }
 
+double share(uint64_t part, uint64_t whole) {
+    return whole > 0 ? shown(static_cast<double>(part) / static_cast<double>(whole)) : 0.0;
+}
+
+Json toJson(const LivePass& pass) {
+    return {{"frames", pass.frames},
+            {"covered_pixels", pass.coveredPixels},
+            {"fallback_pixels", pass.fallbackPixels},
+            {"fallback_share", share(pass.fallbackPixels, pass.coveredPixels)},
+            {"fallback_share_worst", shown(pass.worstFallbackShare)},
+            {"fallback_frames", pass.fallbackFrames},
+            {"missing_pages", pass.missingPages},
+            {"page_bytes_read", pass.pageBytesRead},
+            {"prefetched_bytes", pass.prefetchedBytes},
+            {"used_prefetched_bytes", pass.usedPrefetchedBytes},
+            {"prefetch_precision", share(pass.usedPrefetchedBytes, pass.prefetchedBytes)}};
+}
+
 Json toJson(const BenchRun& run) {
     Json json = {
         {"strategy", run.strategy},
@@ -79,11 +97,13 @@ Json toJson(const BenchRun& run) {
     json["unsettled_frames"] = run.unsettledFrames;
     json["gpu_bytes_peak"] = run.gpuBytesPeak;
     json["host_bytes_peak"] = run.hostBytesPeak;
+    json["live"] = toJson(run.live);
     json["faults"] = run.faults;
     json["series"] = {{"frame_ms", toJson(run.frameMsSeries)},
                       {"cpu_ms", toJson(run.cpuMsSeries)},
                       {"drawn_nodes", toJson(run.drawnNodesSeries)},
-                      {"psnr_luma", toJson(run.psnrLumaSeries)}};
+                      {"psnr_luma", toJson(run.psnrLumaSeries)},
+                      {"fallback_share", toJson(run.live.fallbackShareSeries)}};
     return json;
 }
 

@@ -137,6 +137,20 @@ void writeReports(const Arguments& arguments, const std::vector<BenchRun>& runs,
     }
 }
 
+void printLive(const BenchRun& run) {
+    const LivePass& live = run.live;
+    const auto percent = [](uint64_t part, uint64_t whole) {
+        return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+    };
+    fmt::print(
+        "{:<8} {:<12} live: fallback {:.3f}% of covered pixels, worst frame {:.1f}%; {:.1f} MB "
+        "read, {:.1f} MB ahead, {:.0f}% of it used\n",
+        run.strategy, run.pathName, percent(live.fallbackPixels, live.coveredPixels),
+        100.0 * live.worstFallbackShare, static_cast<double>(live.pageBytesRead) * 1e-6,
+        static_cast<double>(live.prefetchedBytes) * 1e-6,
+        percent(live.usedPrefetchedBytes, live.prefetchedBytes));
+}
+
 void printTable(const std::vector<BenchRun>& runs) {
     fmt::print(
         "{:<8} {:<12} {:>5} {:>9} {:>3} {:>8} {:>9} {:>8} {:>6} {:>7} {:>8} {:>7} {:>9} {:>8}\n",
@@ -150,6 +164,9 @@ void printTable(const std::vector<BenchRun>& runs) {
             run.queryLatencyFrames, run.drawnNodes, run.drawnTriangles * 1e-3, run.queries,
             run.rarn, run.delayed, run.wrongPixels, run.psnrLuma, run.frameMs.median,
             run.cpuMs.median);
+    }
+    for (const BenchRun& run : runs) {
+        if (run.live.frames > 0) printLive(run);
     }
 }
 
@@ -205,9 +222,11 @@ void addBenchCommand(CLI::App& app, Session& session) {
         ->check(CLI::Range(1.0, 1000.0))
         ->capture_default_str();
     command->add_option("--frames", arguments->frames, "The path's first frames only");
-    command->add_option("--repeats", arguments->plan.repeats, "Timed passes")
-        ->check(CLI::Range(1, 1000))
+    command->add_option("--repeats", arguments->plan.repeats, "Timed passes; 0: none")
+        ->check(CLI::Range(0, 1000))
         ->capture_default_str();
+    command->add_flag("!--no-settled", arguments->plan.doesSettle,
+                      "Leave the settled pass out, and with it the bytes");
     command
         ->add_option("--truth-every", arguments->plan.truthEvery,
                      "Compare the pixels of every N-th frame; 0: of none")

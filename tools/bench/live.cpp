@@ -1,0 +1,58 @@
+#include "tools/bench/live.h"
+
+#include "cache/page_source.h"
+#include "ooc/base/progress.h"
+
+#include <algorithm>
+
+namespace pagoda::tools {
+namespace {
+
+void add(LivePass& pass, const hlod::FrameRecord& record) {
+    const double share = record.coveredPixels > 0 ? static_cast<double>(record.fallbackPixels) /
+                                                        static_cast<double>(record.coveredPixels)
+                                                  : 0.0;
+    ++pass.frames;
+    pass.coveredPixels += record.coveredPixels;
+    pass.fallbackPixels += record.fallbackPixels;
+    pass.worstFallbackShare = std::max(pass.worstFallbackShare, share);
+    pass.fallbackFrames += record.fallbackPixels > 0;
+    pass.missingPages += record.missingPages;
+    pass.fallbackShareSeries.push_back(share);
+}
+
+}  // namespace
+
+LivePass runLive(const BenchPlan& plan, const BenchConfiguration& configuration,
+                 const std::string& strategyName, const ooc::Database& database,
+                 Progress& progress) {
+    cache::ManualClock clock;
+    const cache::DatabaseSource source(database);
+    viewer::RendererOptions options = plan.runtime.rendererOptions();
+    options.queryLatencyFrames = configuration.queryLatencyFrames;
+    options.clock = &clock;
+    viewer::Renderer renderer(database.header().lattice, source, options);
+    const auto strategy = hlod::makeStrategy(strategyName, plan.runtime.strategyOptions());
+    const viewer::RenderOptions look{configuration.tauPx, {}, plan.worldUp};
+    LivePass pass;
+    for (size_t i = 0; i < configuration.path.frames.size(); ++i) {
+        progress.check();
+        hlod::Camera camera = configuration.path.frames[i];
+        camera.widthPx = configuration.widthPx;
+        camera.heightPx = configuration.heightPx;
+        if (i == 0) static_cast<void>(renderer.render(camera, *strategy, look));
+        hlod::FrameRecord record = renderer.renderLive(camera, *strategy, look);
+        static_cast<void>(renderer.read(record));
+        add(pass, record);
+        clock.advance(1.0 / configuration.path.framesPerSecond);
+        progress.advance(1);
+    }
+    const cache::Residency::Counters& counters =
+        renderer.runner().streaming().residency().counters();
+    pass.pageBytesRead = counters.bytesRead;
+    pass.prefetchedBytes = counters.prefetchedBytes;
+    pass.usedPrefetchedBytes = counters.usedPrefetchedBytes;
+    return pass;
+}
+
+}  // namespace pagoda::tools
