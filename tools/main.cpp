@@ -57,6 +57,7 @@ void addCommands(CLI::App& app, Session& session) {
 #ifdef PAGODA_HAS_VIEWER
     addRenderCommand(app, session);
     addBenchCommand(app, session);
+    addStressCommand(app, session);
 #endif
     addGenerateCommand(app, session);
     addPathCommand(app, session);

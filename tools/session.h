@@ -31,6 +31,7 @@ void addVerifyCommand(CLI::App& app, Session& session);
 void addExtractCommand(CLI::App& app, Session& session);
 void addRenderCommand(CLI::App& app, Session& session);  // with PAGODA_HAS_VIEWER only
 void addBenchCommand(CLI::App& app, Session& session);   // the same
+void addStressCommand(CLI::App& app, Session& session);  // the same
 void addGenerateCommand(CLI::App& app, Session& session);
 void addPathCommand(CLI::App& app, Session& session);
 

@@ -18,6 +18,7 @@ uint64_t gpuBytes(const RendererOptions& options) {
 
 std::unique_ptr<cache::LoadQueue> makeLoads(const cache::PageSource& source,
                                             const RendererOptions& options, cache::Clock& clock) {
+    if (options.loads != nullptr) return nullptr;
     auto threads = std::make_unique<cache::ThreadLoads>(
         std::vector<const cache::PageSource*>{&source}, options.loaderThreads);
     if (options.disk.isAsIs()) return threads;
@@ -39,9 +40,10 @@ Renderer::Renderer(const ooc::Lattice& lattice, const cache::PageSource& source,
     : clock_(options.clock != nullptr ? *options.clock : wallClock_),
       source_(source),
       device_(lattice, gpuBytes(options)),
-      loads_(makeLoads(source, options, clock_)),
-      streaming_(std::vector<cache::SceneDatabase>{{lattice, &source}}, *loads_, device_.store(),
-                 clock_, streamingOptions(options)),
+      ownLoads_(makeLoads(source, options, clock_)),
+      streaming_(std::vector<cache::SceneDatabase>{{lattice, &source}},
+                 ownLoads_ ? *ownLoads_ : *options.loads, device_.store(), clock_,
+                 streamingOptions(options)),
       tree_(lattice, streaming_.index()),
       runner_(streaming_, tree_, device_, options.queryLatencyFrames) {
     static_cast<void>(runner_.root());

@@ -31,6 +31,7 @@ struct RendererOptions {
     cache::DiskProfile disk{};      // simulated in front of the real one
     cache::Clock* clock = nullptr;  // outlives the renderer; null: the wall's
     size_t loaderThreads = 2;
+    cache::LoadQueue* loads = nullptr;  // outlives the renderer; null: its own threads and `disk`
 };
 
 class Renderer {
@@ -66,7 +67,7 @@ private:
     cache::Clock& clock_;
     const cache::PageSource& source_;
     GlDevice device_;
-    std::unique_ptr<cache::LoadQueue> loads_;
+    std::unique_ptr<cache::LoadQueue> ownLoads_;  // null: the options' are used
     cache::Streaming streaming_;
     hlod::NodeTree tree_;
     hlod::FrameRunner runner_;
