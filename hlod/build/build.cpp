@@ -288,6 +288,7 @@ BuildReport buildDatabase(const BuildOptions& options, Progress& progress) {
     clock.mark("join pieces");
 
     report.bentWedges = builder.bentWedges();
+    report.keptVertices = builder.keptVertices();
     report.scratchPeakBytes = partition.scratchBytes + store.pageBytes();
     report.pageBytes = store.pageBytes();
     publish(options, lattice, inputs, intake, store, report, progress);

@@ -122,6 +122,7 @@ std::string toJson(const BuildReport& report) {
                        {"sloppy_nodes", report.sloppyNodes},
                        {"stuck_nodes", report.stuckNodes},
                        {"bent_wedges", report.bentWedges},
+                       {"kept_vertices", report.keptVertices},
                        {"lattice_step", report.latticeStep},
                        {"levels", levelsJson(report.levels)},
                        {"input_bytes", report.inputBytes},

@@ -1,5 +1,6 @@
 #include "hlod/build/tree_builder.h"
 
+#include "hlod/build/level_lattice.h"
 #include "hlod/build/simplify.h"
 
 #include <algorithm>
@@ -160,6 +161,8 @@ TreeBuilder::Subtree TreeBuilder::buildInner(ooc::NodeId cell, std::vector<Subtr
     bentWedges_ += simple.bentWedges;
     if (simple.isSloppy) node.record.flags |= ooc::kNodeSloppy;
     if (simple.isStuck) node.record.flags |= ooc::kNodeStuck;
+    const LevelSnap snap = snapToLevel(simple.triangles, frame, !simple.isSloppy);
+    keptVertices_ += snap.kept;
     const double distance = sampledDistance(merged, simple.triangles, frame.origin);
     node.record.errorModelUnits = roundedUp(childError + distance * settings_.lattice.step());
     node.triangles = std::move(simple.triangles);

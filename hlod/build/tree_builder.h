@@ -37,6 +37,8 @@ public:
     void buildTopNode(ooc::NodeId cell);
 
     [[nodiscard]] uint64_t bentWedges() const { return bentWedges_.load(); }
+    // LevelSnap::kept over all inner nodes.
+    [[nodiscard]] uint64_t keptVertices() const { return keptVertices_.load(); }
 
 private:
     struct Subtree {  // what a parent needs of a finished child
@@ -57,6 +59,7 @@ private:
     const TreeSettings& settings_;
     NodeStore& store_;
     std::atomic<uint64_t> bentWedges_{0};
+    std::atomic<uint64_t> keptVertices_{0};
 };
 
 }  // namespace pagoda::hlod
