@@ -1,34 +1,13 @@
 #include "tools/bench/bench.h"
 #include "tools/bench/ratios.h"
+#include "tools/bench/report_file.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <thread>
 
 namespace pagoda::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-// Rounded to six digits: more is noise, and reports get committed.
-double shown(double value) {
-    return std::stod(fmt::format("{:.6g}", value));
-}
-
-Json toJson(const Spread& spread) {
-    return {{"median", shown(spread.median)},
-            {"p95", shown(spread.p95)},
-            {"p99", shown(spread.p99)},
-            {"max", shown(spread.max)},
-            {"mean", shown(spread.mean)}};
-}
-
-Json toJson(const std::vector<double>& values) {
-    Json list = Json::array();
-    for (const double value : values) list.push_back(shown(value));
-    return list;
-}
 
 double share(uint64_t part, uint64_t whole) {
     return whole > 0 ? shown(static_cast<double>(part) / static_cast<double>(whole)) : 0.0;
@@ -85,12 +64,12 @@ Json toJson(const BenchRun& run) {
         {"reference_id_differences", shown(run.referenceIdDifferences)},
         {"psnr_luma_reference", shown(run.psnrLumaReference)},
     };
-    json["frame_ms"] = toJson(run.frameMs);
+    json["frame_ms"] = numbersJson(run.frameMs);
     json["frame_ms"]["traverse"] = shown(run.traverseMs.median);
     json["frame_ms"]["query"] = shown(run.queryMs.median);
     json["frame_ms"]["draw"] = shown(run.drawMs.median);
     json["frame_ms"]["upload"] = shown(run.streamMs.median);
-    json["cpu_ms"] = toJson(run.cpuMs);
+    json["cpu_ms"] = numbersJson(run.cpuMs);
     json["bytes_read"] = run.bytesRead;
     json["page_bytes_read"] = run.pageBytesRead;
     json["bytes_exact"] = run.bytesExact;
@@ -99,11 +78,11 @@ Json toJson(const BenchRun& run) {
     json["host_bytes_peak"] = run.hostBytesPeak;
     json["live"] = toJson(run.live);
     json["faults"] = run.faults;
-    json["series"] = {{"frame_ms", toJson(run.frameMsSeries)},
-                      {"cpu_ms", toJson(run.cpuMsSeries)},
-                      {"drawn_nodes", toJson(run.drawnNodesSeries)},
-                      {"psnr_luma", toJson(run.psnrLumaSeries)},
-                      {"fallback_share", toJson(run.live.fallbackShareSeries)}};
+    json["series"] = {{"frame_ms", numbersJson(run.frameMsSeries)},
+                      {"cpu_ms", numbersJson(run.cpuMsSeries)},
+                      {"drawn_nodes", numbersJson(run.drawnNodesSeries)},
+                      {"psnr_luma", numbersJson(run.psnrLumaSeries)},
+                      {"fallback_share", numbersJson(run.live.fallbackShareSeries)}};
     return json;
 }
 
@@ -163,23 +142,12 @@ std::string benchToJson(const BenchPlan& plan, const std::vector<BenchRun>& runs
 }
 
 std::string benchToCsv(const std::vector<BenchRun>& runs) {
-    std::string csv;
-    bool isFirst = true;
+    std::vector<Json> rows;
     for (const BenchRun& run : runs) {
-        const Json flat = toJson(run).flatten();
-        std::string names, values;
-        for (const auto& [key, value] : flat.items()) {
-            if (key.starts_with("/series") || key.starts_with("/faults")) continue;
-            const char* separator = names.empty() ? "" : ",";
-            names += fmt::format("{}{}", separator, key.substr(1));
-            values += fmt::format("{}{}", separator,
-                                  value.is_string() ? value.get<std::string>() : value.dump());
-        }
-        if (isFirst) csv += fmt::format("{}\n", names);
-        isFirst = false;
-        csv += fmt::format("{}\n", values);
+        rows.push_back(toJson(run));
+        rows.back().erase("series");
     }
-    return csv;
+    return csvOf(rows);
 }
 
 }  // namespace pagoda::tools

@@ -14,8 +14,9 @@ struct LegendEntry {
 };
 // Objects at places on the screen, numbered from 1: what is set later may remove them by
 // kUnsetLegend, for the second panel of a figure. Long rows begin at the left edge.
-[[nodiscard]] std::string legendCommands(const std::vector<LegendEntry>& entries,
-                                         int figureWidthPx);
+// `height` of the row: from below, in parts of the figure.
+[[nodiscard]] std::string legendCommands(const std::vector<LegendEntry>& entries, int figureWidthPx,
+                                         double height = 0.955);
 inline constexpr const char* kUnsetLegend = "unset label\nunset arrow\nunset object\n";
 
 }  // namespace pagoda::tools

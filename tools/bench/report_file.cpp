@@ -106,21 +106,21 @@ PictureSize parsePictureSize(const std::string& text) {
     return size;
 }
 
-double shownNumber(double value) {
+double shown(double value) {
     return std::stod(fmt::format("{:.6g}", value));
 }
 
 Json numbersJson(const Spread& spread) {
-    return {{"median", shownNumber(spread.median)},
-            {"p95", shownNumber(spread.p95)},
-            {"p99", shownNumber(spread.p99)},
-            {"max", shownNumber(spread.max)},
-            {"mean", shownNumber(spread.mean)}};
+    return {{"median", shown(spread.median)},
+            {"p95", shown(spread.p95)},
+            {"p99", shown(spread.p99)},
+            {"max", shown(spread.max)},
+            {"mean", shown(spread.mean)}};
 }
 
 Json numbersJson(const std::vector<double>& values) {
     Json list = Json::array();
-    for (const double value : values) list.push_back(shownNumber(value));
+    for (const double value : values) list.push_back(shown(value));
     return list;
 }
 

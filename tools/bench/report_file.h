@@ -33,7 +33,7 @@ struct PictureSize {
 
 using Json = nlohmann::ordered_json;
 // Rounded to six digits: more is noise, and reports get committed.
-[[nodiscard]] double shownNumber(double value);
+[[nodiscard]] double shown(double value);
 [[nodiscard]] Json numbersJson(const Spread& spread);
 [[nodiscard]] Json numbersJson(const std::vector<double>& values);
 // A line with the names of values, then one for each row; a value within an object is NAME/KEY.

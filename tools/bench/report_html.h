@@ -4,9 +4,9 @@
 
 #include "tools/bench/bench.h"
 #include "tools/bench/plots.h"
+#include "tools/bench/report_page.h"
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace pagoda::tools {
@@ -15,9 +15,5 @@ namespace pagoda::tools {
 // drawFigures(runs): where they are missing, the page says how to get them.
 [[nodiscard]] std::string benchToHtml(const BenchPlan& plan, const std::vector<BenchRun>& runs,
                                       const std::string& device, const Figures& figures);
-
-// `text` as it stands in HTML, between tags or in a quoted attribute; other control characters than
-// newlines become spaces.
-[[nodiscard]] std::string escapedHtml(std::string_view text);
 
 }  // namespace pagoda::tools

@@ -4,6 +4,7 @@
 #include "ooc/base/file.h"
 #include "ooc/store/database.h"
 #include "tools/bench/plots.h"
+#include "tools/bench/report_file.h"
 #include "tools/bench/report_html.h"
 #include "tools/session.h"
 #include "viewer/gl_context.h"
@@ -16,7 +17,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <span>
 
 namespace pagoda::tools {
 namespace {
@@ -48,23 +48,6 @@ std::string readText(const std::string& path) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// A report takes the place of an older one.
-void writeText(const std::string& path, const std::string& text) {
-    if (std::filesystem::is_regular_file(path)) std::filesystem::remove(path);
-    File file = File::create(path);
-    file.append(std::as_bytes(std::span(text)));
-    file.close();
-}
-
-void parseSize(const std::string& text, BenchConfiguration& configuration) {
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%5dx%5d%c", &configuration.widthPx, &configuration.heightPx,
-                    &rest) != 2 ||
-        configuration.widthPx < 1 || configuration.heightPx < 1) {
-        throw CLI::ValidationError("--size", "'" + text + "' is no size; write 640x480");
-    }
-}
-
 hlod::CameraPath readPath(const Arguments& arguments, const std::string& file) {
     hlod::CameraPath path = hlod::parseCameraPath(readText(file), {}, file);
     if (arguments.plan.speed != 1) path = hlod::atSpeed(path, arguments.plan.speed);
@@ -85,7 +68,9 @@ void addConfigurations(Arguments& arguments) {
                     configuration.path = path;
                     configuration.tauPx = tauPx;
                     configuration.queryLatencyFrames = latency;
-                    parseSize(size, configuration);
+                    const PictureSize picture = parsePictureSize(size);
+                    configuration.widthPx = picture.widthPx;
+                    configuration.heightPx = picture.heightPx;
                     arguments.plan.configurations.push_back(std::move(configuration));
                 }
             }
@@ -93,45 +78,14 @@ void addConfigurations(Arguments& arguments) {
     }
 }
 
-// A word as a shell reads it.
-std::string shellWord(const std::string& text) {
-    constexpr const char* kPlain =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./,:=+@%-";
-    if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
-    std::string quoted = "'";
-    for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return quoted + "'";
-}
-
-// The command that makes these numbers again, without the reports it writes. It travels with them,
-// so files are named without folders.
-std::string commandOf(const CLI::App& command) {
-    std::string text = "pagoda bench";
-    for (const CLI::Option* option : command.get_options()) {
-        const std::string name = option->get_name();
-        if (option->count() == 0 || name == "--json" || name == "--csv" || name == "--html") {
-            continue;
-        }
-        std::vector<std::string> values = option->results();
-        if (!name.starts_with("--") || name == "--path") {
-            for (std::string& value : values) {
-                value = std::filesystem::path(value).filename().string();
-            }
-        }
-        if (name.starts_with("--")) text += " " + name;
-        text += " " + shellWord(fmt::format("{}", fmt::join(values, ",")));
-    }
-    return text;
-}
-
 void writeReports(const Arguments& arguments, const std::vector<BenchRun>& runs,
                   const std::string& device, Progress& progress) {
     const BenchPlan& plan = arguments.plan;
-    if (!arguments.json.empty()) writeText(arguments.json, benchToJson(plan, runs, device));
-    if (!arguments.csv.empty()) writeText(arguments.csv, benchToCsv(runs));
+    if (!arguments.json.empty()) writeReportFile(arguments.json, benchToJson(plan, runs, device));
+    if (!arguments.csv.empty()) writeReportFile(arguments.csv, benchToCsv(runs));
     if (arguments.html.empty()) return;
     const Figures figures = drawFigures(runs);
-    writeText(arguments.html, benchToHtml(plan, runs, device, figures));
+    writeReportFile(arguments.html, benchToHtml(plan, runs, device, figures));
     if (!figures.problem.empty()) {
         progress.warn(fmt::format("{}: without figures: {}", arguments.html, figures.problem));
     }
@@ -171,6 +125,9 @@ void printTable(const std::vector<BenchRun>& runs) {
 }
 
 void bench(Arguments& arguments, Session& session) {
+    for (const std::string* file : {&arguments.json, &arguments.csv, &arguments.html}) {
+        checkReportFile(*file);
+    }
     addConfigurations(arguments);
     BenchPlan& plan = arguments.plan;
     plan.database = arguments.database;
@@ -251,7 +208,7 @@ void addBenchCommand(CLI::App& app, Session& session) {
         ->check(CLI::Range(0u, 64u))
         ->capture_default_str();
     command->callback([arguments, command, &session] {
-        arguments->plan.command = commandOf(*command);
+        arguments->plan.command = commandText(*command, {"--path"});
         bench(*arguments, session);
     });
 }

@@ -1,6 +1,7 @@
 #include "tools/stress/cell_runner.h"
 
 #include "cache/thread_loads.h"
+#include "hlod/strategies/preload.h"
 
 #include <algorithm>
 #include <ctime>
@@ -11,7 +12,6 @@ namespace {
 // What is resident has room for whatever it wants.
 constexpr uint64_t kRoomyHostBytes = uint64_t{1} << 30;
 constexpr uint64_t kRoomyGpuBytes = uint64_t{8} << 30;
-constexpr int kMaxPreloadFrames = 64;
 // As FrameRunner sees it: the frame that asks, and the one that uploads.
 constexpr double kFramesOfALevel = 2;
 
@@ -78,12 +78,9 @@ hlod::FrameRecord CellRunner::draw(const hlod::Camera& camera) {
 }
 
 uint64_t CellRunner::preload(const hlod::Camera& camera) {
-    uint64_t neededBytes = 0;
-    for (int i = 0; i < kMaxPreloadFrames; ++i) {
-        const hlod::FrameRecord record = draw(camera);
-        neededBytes = std::max(neededBytes, record.demandBytes);
-        if (isComplete(record)) break;
-    }
+    hlod::PreloadStrategy all;
+    static_cast<void>(renderer_->render(camera, all, renderOptions_));
+    const uint64_t neededBytes = draw(camera).demandBytes;
     cell_.decodeCpuMs = 0;
     return neededBytes;
 }

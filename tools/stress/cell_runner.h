@@ -31,7 +31,8 @@ public:
     CellRunner(const CellSetting& setting, const std::optional<StressDisk>& disk,
                uint64_t gpuBytes);
 
-    // Frames until nothing is missing, not counted; GPU bytes that the cut needs.
+    // Reads all down to the cut at tau, culled or not; not counted. GPU bytes that the strategy's
+    // own cut needs.
     uint64_t preload(const hlod::Camera& camera);
     // The next frame of the path.
     void run(const hlod::Camera& camera);
