@@ -49,7 +49,7 @@ struct BuildReport {
     uint64_t triangles = 0;    // in the leaves
     std::map<std::string, uint64_t> dropped, ignored;
     uint64_t objects = 0, materials = 0, nodes = 0, leaves = 0, sloppyNodes = 0, stuckNodes = 0;
-    uint64_t bentWedges = 0;  // corners of coarse triangles whose normal is over 60 degrees off
+    uint64_t bentWedges = 0;    // corners of coarse triangles whose normal is over 60 degrees off
     uint64_t keptVertices = 0;  // of coarse nodes, left off their level's lattice: level_lattice.h
     std::vector<LevelReport> levels;
     std::vector<StageReport> stages;
