@@ -12,16 +12,20 @@ hlod::StrategyOptions RuntimeOptions::strategyOptions() const {
     hlod::StrategyOptions options;
     options.caution = caution;
     if (bias.empty()) return options;
-    if (bias == "paper") {
-        options = {.biasS = 1.0, .biasT = 0.5, .caution = 0.0};
-        return options;
+    if (bias == "paper") return hlod::kPaperOptions;
+    const auto isShare = [](double value) { return value >= 0.0 && value <= 1.0; };
+    int read = 0;
+    bool isWhole =
+        std::sscanf(bias.c_str(), "%lf,%lf%n", &options.biasS, &options.biasT, &read) == 2;
+    if (isWhole && bias[static_cast<size_t>(read)] != '\0') {
+        char rest = 0;
+        isWhole = std::sscanf(bias.c_str() + read, ",%lf%c", &options.biasFloor, &rest) == 1;
     }
-    char rest = 0;
-    if (std::sscanf(bias.c_str(), "%lf,%lf%c", &options.biasS, &options.biasT, &rest) != 2 ||
-        !(options.biasS >= 0 && options.biasS <= 1) ||
-        !(options.biasT >= 0 && options.biasT <= 1)) {
+    if (!isWhole || !isShare(options.biasS) || !isShare(options.biasT) ||
+        !isShare(options.biasFloor)) {
         throw CLI::ValidationError(
-            "--bias", "'" + bias + "' is no bias; write paper, or S,T in [0, 1] such as 0.5,0.5");
+            "--bias",
+            "'" + bias + "' is no bias; write paper, or S,T[,FLOOR] in [0, 1] such as 0.5,0.5");
     }
     return options;
 }
@@ -32,6 +36,7 @@ viewer::RendererOptions RuntimeOptions::rendererOptions() const {
     options.gpuBytes = parseBytes(gpuBudget);
     options.uploadBytesPerFrame = uploadBudget.empty() ? 0 : parseBytes(uploadBudget);
     options.queryLatencyFrames = queryLatencyFrames;
+    options.doesPrefetch = prefetch == "on";
     options.disk = cache::parseDiskProfile(disk);
     return options;
 }
@@ -44,8 +49,8 @@ std::vector<std::string> strategyNames() {
 
 void addRuntimeOptions(CLI::App& command, RuntimeOptions& options) {
     command.add_option("--bias", options.bias,
-                       "How much hidden parts lower the error of a node: S,T in [0, 1], or paper "
-                       "(1,0.5, without --caution) (default: 0.5,0.5)");
+                       "How much hidden parts lower the error of a node: S,T[,FLOOR] in [0, 1], or "
+                       "paper (1,0.5,0 and nothing beyond the paper) (default: 1,1,0.015625)");
     command
         .add_option("--caution", options.caution,
                     "Wait for the answer where an error is foretold within this share of tau")
@@ -65,6 +70,11 @@ void addRuntimeOptions(CLI::App& command, RuntimeOptions& options) {
         ->capture_default_str();
     command.add_option("--upload-budget", options.uploadBudget,
                        "Bytes uploaded a frame at most (default: no bound)");
+    command
+        .add_option("--prefetch", options.prefetch,
+                    "Read ahead what the camera's motion foretells, as far as that pays: on or off")
+        ->check(CLI::IsMember({"on", "off"}))
+        ->capture_default_str();
     command
         .add_option("--disk", options.disk,
                     "Simulated disk: as-is, or parts such as 100MB/s,10ms,fail=1%,short=5%")

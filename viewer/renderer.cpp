@@ -46,6 +46,7 @@ Renderer::Renderer(const ooc::Lattice& lattice, const cache::PageSource& source,
                  streamingOptions(options)),
       tree_(lattice, streaming_.index()),
       runner_(streaming_, tree_, device_, options.queryLatencyFrames) {
+    runner_.setPrefetch(options.doesPrefetch);
     static_cast<void>(runner_.root());
 }
 

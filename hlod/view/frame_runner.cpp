@@ -52,21 +52,29 @@ public:
         return residency_.state(node.page());
     }
     cache::PageState want(const Node& node, double priority, Use use) override {
-        return residency_.want({node.page(), *node.record, priority}, use == Use::StandIn);
+        const cache::PageState state =
+            residency_.want({node.page(), *node.record, priority}, use == Use::StandIn);
+        if (runner_.doesPrefetch_) {
+            runner_.prefetcher_.noteWant(node, state == cache::PageState::Resident);
+        }
+        return state;
     }
     void keep(const Node& node) override { residency_.keep(node.page()); }
     void refine(const Node& node) override {
         runner_.cut_.refine(node);
+        if (runner_.doesPrefetch_) runner_.prefetcher_.noteRefined(node);
         // A refined node is not drawn, but its zippers to unrefined neighbours are.
         if ((node.record->flags & ooc::kNodeHasZippers) != 0) want(node, 0.0, Use::Cut);
     }
     void draw(const Node& node, Use use) override {
         runner_.cut_.draw(node, use == Use::StandIn);
         record_.standIns += use == Use::StandIn;
+        if (runner_.doesPrefetch_ && use == Use::Cut) runner_.prefetcher_.noteDrawn(node);
         runner_.device_.draw(node);
     }
     void hide(const Node& node) override {
         runner_.cut_.hide(node);
+        if (runner_.doesPrefetch_) runner_.prefetcher_.noteHidden(node);
         ++record_.hiddenNodes;
     }
     CountingVisibility* counting() override {
@@ -134,6 +142,7 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
                        lastRecord_ ? &*lastRecord_ : nullptr,
                        lastCamera_ == camera,
                        options.probeLevels};
+    if (doesPrefetch_) prefetcher_.beginFrame(record.frameIndex, tree_);
     strategy.traverse(frame);
     const double traversedMs = nowMs();
     device_.endFrame(cut_, record);
@@ -144,6 +153,10 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
     record.drawMs += drawnMs - traversedMs;
 
     controlTau(camera, options);
+    if (doesPrefetch_) {
+        prefetcher_.run(camera, sceneBox_, record.effectiveTauPx, tree_, streaming_.residency());
+        record.prefetchOff = prefetcher_.offText();
+    }
     streaming_.endFrame(!tauControl_.fits());
     record.streamMs += nowMs() - drawnMs;
     record.simulatedStallMs = static_cast<double>(late_.stalledFrames()) * frameMs_;
@@ -196,6 +209,8 @@ void FrameRunner::account(FrameRecord& record, const cache::Residency::Counters&
     record.bytesUploaded = after.bytesUploaded - before.bytesUploaded;
     record.evictedPages = after.evictedPages - before.evictedPages;
     record.reloadedPages = after.reloadedPages - before.reloadedPages;
+    record.prefetchedBytes = after.prefetchedBytes - before.prefetchedBytes;
+    record.usedPrefetchedBytes = after.usedPrefetchedBytes - before.usedPrefetchedBytes;
     record.indexBlocks = streaming_.index().blockCount();
     record.indexBytes = streaming_.indexBytes();
     record.gpuBytes = residency.gpuUsedBytes();

@@ -6,6 +6,7 @@
 #include "cache/streaming.h"
 #include "hlod/view/device.h"
 #include "hlod/view/late_visibility.h"
+#include "hlod/view/prefetch.h"
 #include "hlod/view/strategy.h"
 #include "hlod/view/tau_control.h"
 
@@ -35,6 +36,10 @@ public:
     FrameRecord settle(const Camera& camera, Strategy& strategy, const FrameOptions& options,
                        const std::function<void(const FrameRecord&)>& onFrame = {});
 
+    // Reads ahead along the camera's motion (prefetch.h). Off at first.
+    void setPrefetch(bool isOn) { doesPrefetch_ = isOn; }
+    [[nodiscard]] const Prefetcher& prefetcher() const noexcept { return prefetcher_; }
+
     // Blocks until the root's record is there. Throws Error when it cannot be read.
     [[nodiscard]] Node root();
     [[nodiscard]] const FrameCut& cut() const noexcept { return cut_; }
@@ -61,6 +66,8 @@ private:
     Device& device_;
     LateVisibility late_;
     TauControl tauControl_;
+    Prefetcher prefetcher_;
+    bool doesPrefetch_ = false;
     FrameCut cut_;
     Box3d sceneBox_;
     std::optional<Camera> lastCamera_;

@@ -57,4 +57,12 @@ NodeRange NodeTree::children(const Node& node, double priority) {
     return {*block, record.childIndex, count, database_};
 }
 
+NodeRange NodeTree::residentChildren(const Node& node) {
+    if (node.record->childCount() == 0 ||
+        index_.state(node.record->childBlock) != cache::IndexCache::BlockState::Resident) {
+        return {};
+    }
+    return children(node);
+}
+
 }  // namespace pagoda::hlod

@@ -55,6 +55,8 @@ public:
     // Empty for a leaf, and for a node whose children cannot be had: their block is on its way
     // (`priority` as in FrameSink::want), or broken (the index cache lists why).
     [[nodiscard]] NodeRange children(const Node& node, double priority = 0.0);
+    // The same, but what is not there is not asked for.
+    [[nodiscard]] NodeRange residentChildren(const Node& node);
     [[nodiscard]] const ooc::Lattice& lattice() const noexcept { return lattice_; }
     // Slots of nodes are below this.
     [[nodiscard]] uint32_t slotCount() const noexcept { return index_.slotCount(); }
