@@ -21,7 +21,7 @@ constexpr double kNewest = 0.5;  // weight of the last frame's motion in the mea
 constexpr double kGoesOn = 0.9;  // of its velocity is left a frame later
 // What is not wanted within so many frames was foretold in vain.
 constexpr uint64_t kSoonFrames = 30;
-constexpr double kPaysAbove = 0.3;      // measured: docs/decisions.md
+constexpr double kPaysAbove = 0.3;      // chosen, not tuned
 constexpr double kPriorBytes = 64e3;    // how much a reason is believed before it was tried
 constexpr double kForget = 1.0 / 1e6;   // a byte later: the last megabyte counts
 constexpr double kMaxLookAhead = 12.0;  // frames: motion tells no more
