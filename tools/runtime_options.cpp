@@ -12,16 +12,20 @@ hlod::StrategyOptions RuntimeOptions::strategyOptions() const {
     hlod::StrategyOptions options;
     options.caution = caution;
     if (bias.empty()) return options;
-    if (bias == "paper") {
-        options = {.biasS = 1.0, .biasT = 0.5, .caution = 0.0};
-        return options;
+    if (bias == "paper") return hlod::kPaperOptions;
+    const auto isShare = [](double value) { return value >= 0.0 && value <= 1.0; };
+    int read = 0;
+    bool isWhole =
+        std::sscanf(bias.c_str(), "%lf,%lf%n", &options.biasS, &options.biasT, &read) == 2;
+    if (isWhole && bias[static_cast<size_t>(read)] != '\0') {
+        char rest = 0;
+        isWhole = std::sscanf(bias.c_str() + read, ",%lf%c", &options.biasFloor, &rest) == 1;
     }
-    char rest = 0;
-    if (std::sscanf(bias.c_str(), "%lf,%lf%c", &options.biasS, &options.biasT, &rest) != 2 ||
-        !(options.biasS >= 0 && options.biasS <= 1) ||
-        !(options.biasT >= 0 && options.biasT <= 1)) {
+    if (!isWhole || !isShare(options.biasS) || !isShare(options.biasT) ||
+        !isShare(options.biasFloor)) {
         throw CLI::ValidationError(
-            "--bias", "'" + bias + "' is no bias; write paper, or S,T in [0, 1] such as 0.5,0.5");
+            "--bias",
+            "'" + bias + "' is no bias; write paper, or S,T[,FLOOR] in [0, 1] such as 0.5,0.5");
     }
     return options;
 }
@@ -45,8 +49,8 @@ std::vector<std::string> strategyNames() {
 
 void addRuntimeOptions(CLI::App& command, RuntimeOptions& options) {
     command.add_option("--bias", options.bias,
-                       "How much hidden parts lower the error of a node: S,T in [0, 1], or paper "
-                       "(1,0.5, without --caution) (default: 0.5,0.5)");
+                       "How much hidden parts lower the error of a node: S,T[,FLOOR] in [0, 1], or "
+                       "paper (1,0.5,0 and nothing beyond the paper) (default: 1,1,0.015625)");
     command
         .add_option("--caution", options.caution,
                     "Wait for the answer where an error is foretold within this share of tau")

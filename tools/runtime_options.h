@@ -18,7 +18,7 @@ struct RuntimeOptions {
     std::string strategy = "frustum";
     double tauPx = 1;
     std::string bias;  // "S,T" or a preset; empty: the default
-    double caution = 0.3;
+    double caution = hlod::StrategyOptions{}.caution;
     uint32_t queryLatencyFrames = 0;
     std::string hostBudget = "256MiB", gpuBudget = "1GiB", uploadBudget;
     std::string disk = "as-is";

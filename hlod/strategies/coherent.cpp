@@ -97,6 +97,14 @@ bool CoherentStrategy::isFine(const Visit& visit, double bias) const {
     return frame_->tauPx > 0.0 && weight * visit.ssePx <= frame_->tauPx;
 }
 
+double CoherentStrategy::biasOf(const Visit& visit) const {
+    const double outlinePx = boxPixels(frame_->view, *visit.node.boxModel);
+    const double share =
+        outlinePx > 1.0 ? std::min(static_cast<double>(visit.visiblePx) / outlinePx, 1.0) : 1.0;
+    const StrategyOptions& options = rules_.options;
+    return std::max(sigmoidBias(share, options.biasS, options.biasT), options.biasFloor);
+}
+
 double CoherentStrategy::priorityOf(const Visit& visit) const {
     return requestPriority(static_cast<double>(visit.visiblePx), visit.excess);
 }
@@ -146,10 +154,12 @@ CoherentStrategy::Prediction CoherentStrategy::predict(Visit& visit, const Memor
     if (rules_.predict == CoherentRules::Predict::InOrder) {
         return isFine(visit, lastBias_) ? Prediction::Stop : Prediction::Refine;
     }
-    if (!memory.isStop && hasHiddenChildrenOnly(visit)) return Prediction::Delay;
+    if (!memory.isStop && !rules_.options.isAsPublished && hasHiddenChildrenOnly(visit)) {
+        return Prediction::Delay;
+    }
     if (memory.isStop || !rules_.doesWeighError) {
         if (!isFine(visit, memory.bias)) return Prediction::Refine;
-        const bool isSure = isFine(visit, memory.bias * (1.0 + rules_.caution));
+        const bool isSure = isFine(visit, memory.bias * (1.0 + rules_.options.caution));
         return isSure || !rules_.doesWeighError ? Prediction::Stop : Prediction::Delay;
     }
     visit.isRise = mayRise(visit);
@@ -176,7 +186,8 @@ bool CoherentStrategy::hasHiddenChildrenOnly(const Visit& visit) {
 // again from the same place: while a node waits, its children hide nothing, what is behind them
 // shows, and a still view would come and go with every second frame.
 bool CoherentStrategy::mayRise(const Visit& visit) {
-    if (memory_[visit.node].refusedSsePx == visit.ssePx) return false;
+    const bool isRefused = memory_[visit.node].refusedSsePx == visit.ssePx;
+    if (isRefused && !rules_.options.isAsPublished) return false;
     const NodeRange children = frame_->tree.children(visit.node);
     double biasSum = 0.0;
     uint32_t count = 0;
@@ -218,10 +229,7 @@ void CoherentStrategy::answer(uint32_t index, uint64_t visiblePx) {
         return;
     }
     markVisible(index);
-    const double outlinePx = boxPixels(frame_->view, *visit.node.boxModel);
-    const double share =
-        outlinePx > 1.0 ? std::min(static_cast<double>(visiblePx) / outlinePx, 1.0) : 1.0;
-    memory.bias = lastBias_ = sigmoidBias(share, rules_.biasS, rules_.biasT);
+    memory.bias = lastBias_ = biasOf(visit);
     memory.isStop = isFine(visit, memory.bias);
     if (!wasStop) {
         ++counts.delayVisible;
@@ -321,9 +329,7 @@ bool CoherentStrategy::drawStandIn(uint32_t index) {
 namespace {
 
 std::unique_ptr<Strategy> make(CoherentRules rules, const StrategyOptions& options) {
-    rules.biasS = options.biasS;
-    rules.biasT = options.biasT;
-    rules.caution = options.caution;
+    rules.options = options;
     return std::make_unique<CoherentStrategy>(rules);
 }
 

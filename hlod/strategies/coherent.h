@@ -27,8 +27,7 @@ struct CoherentRules {
     bool doesWeighError = true;  // VMSSE; else SSE alone
     bool doesWaitAtOnce = false;
     bool usesPyramid = false;  // answers from depths drawn before the first wait, not from queries
-    double biasS = 0.5, biasT = 0.5;
-    double caution = 0.0;  // StrategyOptions
+    StrategyOptions options{};
 };
 
 // Answers from a depth pyramid, which is built when the first one is waited for: every box of the
@@ -97,6 +96,7 @@ private:
     void standInFor(uint32_t index);
     [[nodiscard]] bool drawStandIn(uint32_t index);
     [[nodiscard]] bool isFine(const Visit& visit, double bias) const;
+    [[nodiscard]] double biasOf(const Visit& visit) const;
     [[nodiscard]] double priorityOf(const Visit& visit) const;
     [[nodiscard]] bool isLater(uint32_t a, uint32_t b) const;
 

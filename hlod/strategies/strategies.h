@@ -12,12 +12,21 @@ namespace pagoda::hlod {
 struct StrategyOptions {
     // The sigmoid bias (paper 004): s blends linear (0) and sigmoid (1), t is its turnover: smaller
     // keeps more detail. Both in [0, 1]. The paper's are s = 1, t = 0.5.
-    double biasS = 0.5, biasT = 0.5;
+    double biasS = 1.0, biasT = 1.0;
+    // Beyond the paper: what is seen through a chink counts at least for so much. An error of more
+    // than tau / biasFloor pixels is never drawn, however little of it is seen. 0 is the paper's.
+    double biasFloor = 1.0 / 64;
     // Beyond the paper: a stop that is foretold within this share of the allowed error waits for
     // its answer (delay), since it would often turn out wrong and be drawn in vain (RARN). 0 is
     // the paper's.
-    double caution = 0.3;
+    double caution = 0.15;
+    // The traversal as it was published: without the rules that let a still view come to rest.
+    bool isAsPublished = false;
 };
+
+// Biases that the paper states, and nothing beyond it.
+inline constexpr StrategyOptions kPaperOptions{
+    .biasS = 1.0, .biasT = 0.5, .biasFloor = 0.0, .caution = 0.0, .isAsPublished = true};
 
 struct StrategyRow {
     std::string_view name;

@@ -43,10 +43,10 @@ std::string summary(const BenchPlan& plan, const std::vector<BenchRun>& runs,
                                             escapedHtml(device)));
     html += termHtml(
         "Settings",
-        fmt::format("bias {:g},{:g}, caution {:g}; budgets: host {}, GPU {}, upload {}; disk "
+        fmt::format("bias {:g},{:g},{:g}, caution {:g}; budgets: host {}, GPU {}, upload {}; disk "
                     "{}; paths at {:g}x "
                     "speed; {} timed {}; pixels compared every {} frames",
-                    options.biasS, options.biasT, options.caution,
+                    options.biasS, options.biasT, options.biasFloor, options.caution,
                     escapedHtml(plan.runtime.hostBudget), escapedHtml(plan.runtime.gpuBudget),
                     plan.runtime.uploadBudget.empty() ? "without bound"
                                                       : escapedHtml(plan.runtime.uploadBudget),
