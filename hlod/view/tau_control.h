@@ -26,12 +26,20 @@ public:
 
 private:
     void raise(const Frame& frame);
+    void forgetWhenCheaper(const Frame& frame);
+    void noteSteepness(uint64_t demandBytes, double effectiveTauPx);
     void lower(const Frame& frame);
 
     double raised_ = 0.0;   // 0: nothing has been raised
     double tooFine_ = 0.0;  // the greatest tau that is known not to fit from here
     double hurry_ = 1.0;
     uint64_t lastRaisedBytes_ = UINT64_MAX;  // demanded when it was raised in the frame before
+    double lastRaisedTauPx_ = 0.0;           // then
+    double steepness_ = 2.0;                 // ln(bytes) falls by so much for each of ln(tau)
+    double restTauPx_ = 0.0;                 // as long as this holds,
+    uint64_t restBytes_ = 0;                 // this was the least demanded
+    int forgotten_ = 0;                      // times, in this view
+    int raises_ = 0;                         // one after the other
     bool isMoving_ = false, fits_ = true;
 };
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -85,6 +86,55 @@ TEST(TauControl, ComesBackWhenTheCutFitsAgain) {
     const std::vector<double> taus = play(control, 200, 0.5 * kBudget, false);
     EXPECT_EQ(taus.back(), 1.0);
     EXPECT_EQ(turns(taus), 0);
+}
+
+// From inside a model boxes around the eye leave the cut only at thousands of pixels: bytes fall
+// slowly with tau.
+TEST(TauControl, SlowlyFallingDemandIsMetInFewFramesWithoutGoingFarTooFar) {
+    for (const double steepness : {0.15, 0.3, 0.6, 1.0, 2.0}) {
+        TauControl control;
+        const auto bytes = [&](double tauPx) {
+            return static_cast<uint64_t>(5.0 * kBudget / std::pow(tauPx, steepness));
+        };
+        std::vector<double> taus;
+        for (int i = 0; i < 100; ++i) {
+            taus.push_back(control.effectiveTauPx(1.0));
+            control.update({.tauPx = 1.0,
+                            .demandBytes = bytes(taus.back()),
+                            .budgetBytes = kBudget,
+                            .isSameView = true});
+        }
+        const double right = std::pow(5.0 / 0.95, 1.0 / steepness);
+        const auto settled = std::find_if(taus.begin(), taus.end(),
+                                          [&](double tau) { return bytes(tau) <= kBudget; });
+        EXPECT_LE(settled - taus.begin(), 16) << steepness;
+        EXPECT_LE(*std::max_element(taus.begin(), taus.end()), 4.0 * right) << steepness;
+        EXPECT_LE(turns(taus), 1) << steepness;
+        EXPECT_FALSE(control.isMoving()) << steepness;
+        EXPECT_TRUE(control.fits()) << steepness;
+    }
+}
+
+// A strategy learns what is hidden while the camera stands still.
+TEST(TauControl, AStillViewThatGetsCheaperComesBack) {
+    TauControl control;
+    static_cast<void>(play(control, 60, 50.0 * kBudget, true));
+    const std::vector<double> taus = play(control, 200, 5.0 * kBudget, true);
+    EXPECT_LE(taus.back(), 1.3 * std::sqrt(5.0 / 0.95));
+    EXPECT_EQ(turns(taus), 0);
+    EXPECT_TRUE(control.fits());
+    EXPECT_FALSE(control.isMoving());
+}
+
+TEST(TauControl, AStillViewThatWaversComesToRestAllTheSame) {
+    TauControl control;
+    static_cast<void>(play(control, 60, 50.0 * kBudget, true));
+    for (int i = 0; i < 200; ++i) {
+        static_cast<void>(play(control, 1, (i % 2 == 0 ? 30.0 : 50.0) * kBudget, true));
+    }
+    const std::vector<double> taus = play(control, 100, 50.0 * kBudget, true);
+    EXPECT_EQ(taus.front(), taus.back());
+    EXPECT_TRUE(control.fits());
 }
 
 TEST(TauControl, BeingStuckRaisesAlthoughTheCutFits) {
