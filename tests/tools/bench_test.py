@@ -5,7 +5,6 @@
 
 On a small interior that `pagoda generate` makes, drawn by whatever GL there is."""
 import csv
-import html.parser
 import json
 import os
 import shutil
@@ -16,42 +15,13 @@ from pathlib import Path
 sys.dont_write_bytecode = True  # no files in the source tree
 sys.path.insert(0, str(Path(__file__).parent))
 import program
+from page import Page
 
 PAGODA = program.Program(sys.argv[1])
 STRATEGIES = ["frustum", "bool", "sw", "simp", "coh", "hzb"]
 FRAMES, REPEATS, TAUS = 4, 2, [2, 32]
 MEANS = ["drawn_nodes", "drawn_triangles", "queries", "rarn", "delayed", "wrong_pixels",
          "covered_pixels", "psnr_luma", "reference_id_differences", "psnr_luma_reference"]
-# Elements without an end, and what SVG closes in its own start tag.
-VOID = {"meta", "br", "img", "link", "hr", "input"}
-
-
-class Page(html.parser.HTMLParser):
-    """Every start has its end, in order; counts elements, keeps ids and links."""
-
-    def __init__(self, text):
-        super().__init__()
-        self.open, self.counts, self.ids, self.faults, self.links = [], {}, [], [], []
-        self.feed(text)
-        self.close()
-        self.faults += [f"<{tag}> stays open" for tag in self.open]
-
-    def handle_starttag(self, tag, attributes):
-        self.handle_startendtag(tag, attributes)
-        if tag not in VOID:
-            self.open.append(tag)
-
-    def handle_startendtag(self, tag, attributes):
-        self.counts[tag] = self.counts.get(tag, 0) + 1
-        for name, value in attributes:
-            if name == "id":
-                self.ids.append(value)
-            if name in ("href", "src", "xlink:href"):
-                self.links.append(value)
-
-    def handle_endtag(self, tag):
-        if not self.open or self.open.pop() != tag:
-            self.faults.append(f"</{tag}> at {self.getpos()}")
 
 
 class BenchTest(unittest.TestCase):

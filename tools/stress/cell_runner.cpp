@@ -139,12 +139,9 @@ void CellRunner::countBudgets(const hlod::FrameRecord& record, uint64_t uploaded
 
 void CellRunner::countPixels(const hlod::FrameRecord& record, const viewer::Picture& picture,
                              bool isStill) {
-    const auto covered = static_cast<double>(record.coveredPixels);
-    const auto missing = static_cast<double>(record.fallbackPixels);
-    cell_.coveredPxS += covered * frameS_;
-    cell_.missingPxS += missing * frameS_;
-    cell_.framesMissing += record.fallbackPixels > 0;
-    cell_.missingShareSeries.push_back(covered > 0 ? missing / covered : 0);
+    coveredPx_.push_back(static_cast<double>(record.coveredPixels));
+    missingPx_.push_back(static_cast<double>(record.fallbackPixels));
+    isEmpty_.push_back(record.drawnNodes == 0);
 
     const hlod::FrameCut& cut = renderer_->runner().cut();
     std::vector<double> errorOf{0.0};
@@ -204,7 +201,22 @@ void CellRunner::countBytes() {
     cell_.cancelled = requests.cancelled;
 }
 
+// Where nothing is drawn yet, what the next frame shows is missing.
+void CellRunner::integratePixels() {
+    for (size_t i = frame_; i-- > 0;) {
+        if (isEmpty_[i] && i + 1 < frame_) coveredPx_[i] = coveredPx_[i + 1];
+        if (isEmpty_[i]) missingPx_[i] = coveredPx_[i];
+    }
+    for (size_t i = 0; i < frame_; ++i) {
+        cell_.coveredPxS += coveredPx_[i] * frameS_;
+        cell_.missingPxS += missingPx_[i] * frameS_;
+        cell_.framesMissing += missingPx_[i] > 0;
+        cell_.missingShareSeries.push_back(coveredPx_[i] > 0 ? missingPx_[i] / coveredPx_[i] : 0);
+    }
+}
+
 StressCell CellRunner::finish() {
+    integratePixels();
     endJump();
     countBytes();
     cell_.frames = frame_;

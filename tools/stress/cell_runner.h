@@ -48,6 +48,7 @@ private:
     void beginJump();
     void endJump();
     void countBytes();
+    void integratePixels();
 
     const CellSetting& setting_;
     double frameS_;
@@ -64,6 +65,8 @@ private:
     double lastTauPx_ = 0;
     std::vector<double> errors_, lastErrors_;  // of the node at each pixel; 0: none, or a stand-in
     std::unordered_set<ooc::NodeId, NodeHash> drawn_;
+    std::vector<double> coveredPx_, missingPx_;  // of each frame
+    std::vector<bool> isEmpty_;
     size_t frame_ = 0;
     size_t sharpFrame_ = 0;     // since the last jump: from here on nothing was missing
     uint64_t bytesBefore_ = 0;  // that jump

@@ -27,8 +27,8 @@ const std::vector<StressDisk>& stressDisks() {
         {"500 MB/s", "500MB/s"},
         {"100 MB/s, 10 ms", "100MB/s,10ms"},
         {"50 Mbit/s, 40 ms", "50Mbit/s,40ms"},
-        {"1% of reads fail", "500MB/s,fail=1%"},
-        {"short reads", "500MB/s,short=20%"},
+        {"1% of reads fail", "500MB/s,5ms,fail=1%"},
+        {"short reads", "500MB/s,5ms,short=20%"},
     };
     return kDisks;
 }

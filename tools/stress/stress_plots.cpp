@@ -27,6 +27,13 @@ set lmargin at screen 0.19
 set rmargin at screen 0.98
 )";
 
+// Labels of ticks are formats of numbers.
+std::string tickLabel(const std::string& text) {
+    std::string label;
+    for (const char c : text) label += c == '%' ? std::string("%%") : std::string(1, c);
+    return gnuplotQuoted(label);
+}
+
 // One row a cell, from the top, workloads under their names.
 struct Rows {
     std::vector<double> heights;  // of the cells' middles
@@ -43,13 +50,12 @@ struct Rows {
                 y -= 1.3;
                 names += fmt::format(
                     "set label {} at graph 0, first {} right offset -1,0 font "
-                    "'Helvetica-Bold,12'\n",
+                    "'Helvetica:Bold,12'\n",
                     gnuplotQuoted(cell->workload), y);
             }
             y -= 1;
             heights.push_back(y);
-            tics +=
-                fmt::format("{}{} {}", tics.empty() ? "" : ", ", gnuplotQuoted(cell->disk.name), y);
+            tics += fmt::format("{}{} {}", tics.empty() ? "" : ", ", tickLabel(cell->disk.name), y);
         }
         const double count = -y + 0.2;
         figureHeightPx = static_cast<int>(count * kRowPx) + kAroundPx;
@@ -243,7 +249,7 @@ Drawing sharpMarks(const std::vector<const StressCell*>& cells) {
     std::string tics, sharp = "$s << EOD\n", late = "$l << EOD\n", bounds = "$b << EOD\n";
     double most = 0;
     for (size_t i = 0; i < cells.size(); ++i) {
-        tics += fmt::format("{}{} {}", i == 0 ? "" : ", ", gnuplotQuoted(cells[i]->disk.name), i);
+        tics += fmt::format("{}{} {}", i == 0 ? "" : ", ", tickLabel(cells[i]->disk.name), i);
         const std::vector<StressJump>& jumps = cells[i]->jumps;
         for (size_t k = 0; k < jumps.size(); ++k) {
             const double x =

@@ -98,7 +98,7 @@ WorkloadPath WorkloadPaths::make(std::string_view workload) {
         PathOptions options;
         options.frames = frames_;
         options.seed = seed_;
-        options.holdFrames = std::max<size_t>(frames_ / kPlaces, 1);
+        options.holdFrames = (frames_ + kPlaces - 1) / kPlaces;
         made.madeOf = workload;
         made.path = makePath(database_, up_, workload, options, progress_);
     }
