@@ -78,7 +78,7 @@ void TauControl::raise(const Frame& frame) {
     noteSteepness(frame.demandBytes, effective);
     const double leastStep = frame.isStuck ? kStuckStep : kLeastStep;
     const double greatestStep =
-        std::min(kGreatestStep * std::pow(kStepGrowth, raises_), kGreatestStepEver) * hurry_;
+        std::min(kGreatestStep * std::pow(kStepGrowth, raises_), kGreatestStepEver);
     const double step = std::clamp(std::pow(share(frame), 1.0 / steepness_) * hurry_, leastStep,
                                    std::max(leastStep, greatestStep));
     raised_ = std::max(effective, kLeastTauPx) * step;
