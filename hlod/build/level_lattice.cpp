@@ -34,7 +34,7 @@ public:
     Snapper(std::span<const SoupTriangle> triangles, int shift);
 
     void holdBorders();
-    void chooseTargets();
+    void chooseTargets(const Box3i& bounds);
     // Keeps vertices where they were until no triangle turns too far: ends, as each round but the
     // last keeps at least one more.
     void keepTriangles();
@@ -88,7 +88,7 @@ Vec3i Snapper::rounded(const Vec3i& point) const {
             ((point.z + half) >> shift_) << shift_};
 }
 
-void Snapper::chooseTargets() {
+void Snapper::chooseTargets(const Box3i& bounds) {
     const std::vector<PlaceKey>& places = places_.keys();
     VertexTable<PlaceKey> taken;
     taken.reset(places.size());
@@ -100,7 +100,7 @@ void Snapper::chooseTargets() {
     for (size_t i = 0; i < places.size(); ++i) {
         if (targets_[i] == places[i].position) continue;
         const size_t before = taken.keys().size();
-        if (taken.add({targets_[i]}) < before) {
+        if (!bounds.contains(targets_[i]) || taken.add({targets_[i]}) < before) {
             keep(i);
         } else {
             ++counts_.moved;
@@ -158,12 +158,12 @@ int levelShift(const CellFrame& cell) {
 }
 
 LevelSnap snapToLevel(std::vector<SoupTriangle>& triangles, const CellFrame& cell,
-                      bool keepBorders) {
+                      const Box3i& bounds, bool keepBorders) {
     const int shift = levelShift(cell);
     if (shift == 0) return {};
     Snapper snapper(triangles, shift);
     if (keepBorders) snapper.holdBorders();
-    snapper.chooseTargets();
+    snapper.chooseTargets(bounds);
     snapper.keepTriangles();
     snapper.write(triangles);
     return snapper.counts();

@@ -25,12 +25,13 @@ struct LevelSnap {
 // Moves every vertex of one node's triangles, all wedges at its place together, to the nearest
 // point of the level's lattice, unless
 // - it is a border vertex (with `keepBorders`; clustered nodes have none to keep),
+// - the point lies outside of `bounds`: the model's box must not grow by it,
 // - another vertex of the node stands there already or came first, or
 // - a triangle would turn by more than 60 degrees or lose its area.
 // So no two places become one and no edge, hence no cut, opens or becomes complex: the surface
 // keeps its connections, only its places change. Deterministic: depends on the order of
 // `triangles` only.
 LevelSnap snapToLevel(std::vector<SoupTriangle>& triangles, const CellFrame& cell,
-                      bool keepBorders);
+                      const Box3i& bounds, bool keepBorders);
 
 }  // namespace pagoda::hlod

@@ -161,7 +161,7 @@ TreeBuilder::Subtree TreeBuilder::buildInner(ooc::NodeId cell, std::vector<Subtr
     bentWedges_ += simple.bentWedges;
     if (simple.isSloppy) node.record.flags |= ooc::kNodeSloppy;
     if (simple.isStuck) node.record.flags |= ooc::kNodeStuck;
-    const LevelSnap snap = snapToLevel(simple.triangles, frame, !simple.isSloppy);
+    const LevelSnap snap = snapToLevel(simple.triangles, frame, node.record.box, !simple.isSloppy);
     keptVertices_ += snap.kept;
     const double distance = sampledDistance(merged, simple.triangles, frame.origin);
     node.record.errorModelUnits = roundedUp(childError + distance * settings_.lattice.step());

@@ -56,17 +56,18 @@ std::vector<SoupTriangle> pyramid(const Vec3i& apex, int32_t size) {
 
 // A root cell whose lattice has 2^4 finest steps.
 constexpr CellFrame kRoot{.origin = Vec3i(0), .bits = kLevelBits + 4, .extentBits = kLevelBits + 4};
+constexpr Box3i kAnywhere{.min = Vec3i(0), .max = Vec3i(1 << (kLevelBits + 4))};
 
-TEST(LevelLattice, eachLevelHasTwiceTheStepOfTheNextDownToTheFinest) {
+TEST(LevelLattice, EachLevelHasTwiceTheStepOfTheNextDownToTheFinest) {
     const ooc::NodeId root = ooc::NodeId::root();
     EXPECT_EQ(levelShift(cellFrame(root, 18)), 18 - kLevelBits);
     EXPECT_EQ(levelShift(cellFrame(root.child(5), 18)), 17 - kLevelBits);
     EXPECT_EQ(levelShift(cellFrame(root.child(5), kLevelBits)), 0);
 }
 
-TEST(LevelLattice, interiorVerticesMoveToTheNearestPointAndBordersStay) {
+TEST(LevelLattice, InteriorVerticesMoveToTheNearestPointAndBordersStay) {
     std::vector<SoupTriangle> triangles = pyramid({505, 519, 295}, 1000);
-    const LevelSnap snap = snapToLevel(triangles, kRoot, true);
+    const LevelSnap snap = snapToLevel(triangles, kRoot, kAnywhere, true);
     EXPECT_EQ(snap.borders, 4u);
     EXPECT_EQ(snap.moved, 1u);
     EXPECT_EQ(snap.kept, 0u);
@@ -74,39 +75,50 @@ TEST(LevelLattice, interiorVerticesMoveToTheNearestPointAndBordersStay) {
     for (size_t i = 0; i < 4; ++i) EXPECT_EQ(triangles[i].corners, expected[i].corners);
 }
 
-TEST(LevelLattice, clusteredNodesHaveNoBordersToKeep) {
+TEST(LevelLattice, ClusteredNodesHaveNoBordersToKeep) {
     std::vector<SoupTriangle> triangles = pyramid({505, 519, 295}, 1000);
-    EXPECT_EQ(snapToLevel(triangles, kRoot, false).moved, 5u);
+    EXPECT_EQ(snapToLevel(triangles, kRoot, kAnywhere, false).moved, 5u);
     EXPECT_EQ(triangles[1].corners[0], Vec3i(1008, 0, 0));
 }
 
-TEST(LevelLattice, aVertexThatWouldTurnATriangleOverStays) {
+TEST(LevelLattice, AVertexThatWouldTurnATriangleOverStays) {
     // The apex lies one step off the line of a side: rounded it would cross it.
     std::vector<SoupTriangle> triangles = pyramid({500, 2, 1}, 1000);
     const std::vector<SoupTriangle> before = triangles;
-    const LevelSnap snap = snapToLevel(triangles, kRoot, true);
+    const LevelSnap snap = snapToLevel(triangles, kRoot, kAnywhere, true);
     EXPECT_EQ(snap.moved, 0u);
     EXPECT_EQ(snap.kept, 1u);
     for (size_t i = 0; i < 4; ++i) EXPECT_EQ(triangles[i].corners, before[i].corners);
 }
 
-TEST(LevelLattice, noVertexMovesOntoAnother) {
+TEST(LevelLattice, NoVertexLeavesTheBounds) {
+    std::vector<SoupTriangle> triangles = pyramid({505, 519, 295}, 1000);
+    const Box3i tight{.min = Vec3i(0), .max = {1000, 1000, 295}};
+    EXPECT_EQ(snapToLevel(triangles, kRoot, tight, true).moved, 1u);
+    triangles = pyramid({505, 519, 297}, 1000);  // rounds up to 304
+    const LevelSnap snap = snapToLevel(triangles, kRoot, {tight.min, {1000, 1000, 297}}, true);
+    EXPECT_EQ(snap.moved, 0u);
+    EXPECT_EQ(snap.kept, 1u);
+    EXPECT_EQ(triangles[0].corners[2], Vec3i(505, 519, 297));
+}
+
+TEST(LevelLattice, NoVertexMovesOntoAnother) {
     // The third corner is a point of the level's lattice, and the nearest one to the apex.
     std::vector<SoupTriangle> triangles = pyramid({1002, 1001, 7}, 1007);
-    EXPECT_EQ(snapToLevel(triangles, kRoot, true).kept, 1u);
+    EXPECT_EQ(snapToLevel(triangles, kRoot, kAnywhere, true).kept, 1u);
     EXPECT_EQ(triangles[0].corners[2], Vec3i(1002, 1001, 7));
     // Two apexes near one point: the first gets it.
     std::vector<SoupTriangle> two = pyramid({505, 519, 295}, 1000);
     const std::vector<SoupTriangle> other = pyramid({507, 517, 293}, 2000);
     two.insert(two.end(), other.begin(), other.end());
-    const LevelSnap together = snapToLevel(two, kRoot, true);
+    const LevelSnap together = snapToLevel(two, kRoot, kAnywhere, true);
     EXPECT_EQ(together.moved, 1u);
     EXPECT_EQ(together.kept, 1u);
     EXPECT_EQ(two[0].corners[2], Vec3i(512, 512, 288));
     EXPECT_EQ(two[4].corners[2], Vec3i(507, 517, 293));
 }
 
-TEST(LevelLattice, interiorsOfBuiltNodesLieOnTheirLevelAndBordersOnPlacesOfTheInput) {
+TEST(LevelLattice, InteriorsOfBuiltNodesLieOnTheirLevelAndBordersOnPlacesOfTheInput) {
     const test::TemporaryFolder folder;
     writePly(test::roughTorus(300, 120), folder / "torus.ply");
     BuildOptions options;
