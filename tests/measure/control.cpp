@@ -242,16 +242,16 @@ private:
 hlod::Camera steppedCamera(const Scene& scene, int frame) {
     hlod::Camera camera = scene.path.frames.front();
     const bool isLarge = frame / kPhaseFrames == 1;
-    camera.widthPx = isLarge ? 320 : 160;
-    camera.heightPx = isLarge ? 240 : 120;
+    camera.widthPx = isLarge ? 160 : 80;
+    camera.heightPx = isLarge ? 120 : 60;
     return camera;
 }
 
 hlod::Camera jumpingCamera(const Scene& scene, int frame) {
     hlod::Camera camera =
         scene.path.frames[static_cast<size_t>(frame) * 37 % scene.path.frames.size()];
-    camera.widthPx = 160;
-    camera.heightPx = 120;
+    camera.widthPx = 80;
+    camera.heightPx = 60;
     return camera;
 }
 
@@ -315,7 +315,7 @@ void printUploads(const Scene& scene) {
         World world(scene, {.uploadBytesPerFrame = budget});
         uint64_t uploaded = 0, most = 0;
         int sharp = 0;
-        for (int frame = 0; frame < 300; ++frame) {
+        for (int frame = 0; frame < 150; ++frame) {
             const hlod::FrameRecord record = world.run(steppedCamera(scene, kPhaseFrames), 1.0);
             uploaded += record.bytesUploaded;
             most = std::max(most, record.bytesUploaded);
@@ -362,14 +362,14 @@ void draw(Gnuplot& gnuplot, const std::string& file, const std::vector<Trace>& t
     const std::string svg = gnuplot.svg(
         fmt::format(
             "{}set border 3 lc rgb '#333333'\nset tics nomirror out scale 0.6\n"
-            "set grid ytics lc rgb '#dddddd' lt 1 lw 0.6\nset lmargin at screen 0.1\n"
+            "set grid ytics lc rgb '#dddddd' lt 1 lw 0.6\nset lmargin at screen 0.12\n"
             "set rmargin at screen 0.98\n{}set multiplot\nset xrange [0:{}]\nset logscale y\n"
             "set tmargin at screen 0.93\nset bmargin at screen 0.53\nset format x ''\n"
             "set ylabel 'effective tau, px'\n{}\n{}set tmargin at screen 0.48\n"
-            "set bmargin at screen 0.12\nset format x '%g'\nset xlabel 'frame'\nset ylabel '{}'\n"
+            "set bmargin at screen 0.14\nset format x '%g'\nset xlabel 'frame'\nset ylabel '{}'\n"
             "set arrow from graph 0, first 1 to graph 1, first 1 nohead dt 2 lc rgb '#333333'\n"
             "{}\nunset multiplot\n",
-            data, legendCommands(entries, kWidthPx), traces.front().taus.size(), upper,
+            data, legendCommands(entries, kWidthPx - 90), traces.front().taus.size(), upper,
             kUnsetLegend, loadName, lower),
         {kWidthPx, kHeightPx}, "c");
     if (!gnuplot.problem().empty()) throw Error(file, "", gnuplot.problem(), "");
