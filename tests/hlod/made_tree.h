@@ -68,7 +68,7 @@ public:
     std::string read(uint64_t, std::span<std::byte>) const override { return {}; }
     ooc::Loaded<ooc::Page> decodePage(const ooc::NodeRecord&,
                                       std::span<const std::byte>) const override {
-        return {std::nullopt, "there are no pages"};
+        return page;
     }
     uint32_t blockCount() const override { return static_cast<uint32_t>(blocks_.size()); }
     cache::ByteRange blockRange(uint32_t block) const override {
@@ -80,6 +80,7 @@ public:
     }
 
     ooc::Lattice lattice;
+    ooc::Loaded<ooc::Page> page{std::nullopt, "there are no pages"};  // of every node
 
 private:
     std::vector<ooc::NodeRecord> nodes_;
