@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <limits>
 
 namespace pagoda::hlod {
@@ -16,20 +17,28 @@ struct Projected {
     double nearest = std::numeric_limits<double>::max();
 };
 
+// What one of the box's two ends on each axis adds to a coordinate along `direction`.
+struct Shares {
+    std::array<Vec3d, 2> ends;
+    Shares(const Vec3d& direction, const Vec3d& least, const Vec3d& most)
+        : ends{direction * least, direction * most} {}
+    [[nodiscard]] double at(size_t corner) const {
+        return ends[corner & 1].x + ends[(corner >> 1) & 1].y + ends[(corner >> 2) & 1].z;
+    }
+};
+
 Projected project(const View& view, const Box3d& box) {
     const double scaleX = 0.5 * view.camera().widthPx, scaleY = 0.5 * view.camera().heightPx;
+    const Vec3d least = box.min - view.eye(), most = box.max - view.eye();
+    const Shares forward(view.forward(), least, most), right(view.right(), least, most),
+        up(view.up(), least, most);
     Projected projected;
     for (size_t i = 0; i < 8; ++i) {
-        const Vec3d corner((i & 1) != 0 ? box.max.x : box.min.x,
-                           (i & 2) != 0 ? box.max.y : box.min.y,
-                           (i & 4) != 0 ? box.max.z : box.min.z);
-        const Vec3d offset = corner - view.eye();
-        const double depth = glm::dot(view.forward(), offset);
+        const double depth = forward.at(i);
         assert(depth > 0.0);
         projected.nearest = std::min(projected.nearest, depth);
-        projected.corners[i] = {
-            scaleX * (1.0 + glm::dot(view.right(), offset) / (depth * view.tanX())),
-            scaleY * (1.0 - glm::dot(view.up(), offset) / (depth * view.tanY()))};
+        projected.corners[i] = {scaleX * (1.0 + right.at(i) / (depth * view.tanX())),
+                                scaleY * (1.0 - up.at(i) / (depth * view.tanY()))};
     }
     return projected;
 }
@@ -38,31 +47,12 @@ double cross(const Point& a, const Point& b, const Point& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-// Polygons of at most 8 corners, one more for each side they are clipped by.
+// A quad has at most one corner more for each side it is clipped by; rounding may add some.
 struct Polygon {
     std::array<Point, 16> points;
     size_t count = 0;
     void add(const Point& point) { points[count++] = point; }
 };
-
-// Monotone chain.
-Polygon convexHull(std::array<Point, 8> points) {
-    std::sort(points.begin(), points.end(),
-              [](const Point& a, const Point& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
-    Polygon hull;
-    const auto addTurning = [&](const Point& point, size_t least) {
-        while (hull.count > least &&
-               cross(hull.points[hull.count - 2], hull.points[hull.count - 1], point) <= 0.0) {
-            --hull.count;
-        }
-        hull.add(point);
-    };
-    for (size_t i = 0; i < 8; ++i) addTurning(points[i], 1);
-    const size_t lower = hull.count;
-    for (size_t i = 7; i-- > 0;) addTurning(points[i], lower);
-    --hull.count;  // the first point again
-    return hull;
-}
 
 // Keeps what lies on the side of the line where sign * (coordinate - limit) <= 0.
 Polygon clip(const Polygon& polygon, glm::length_t axis, double sign, double limit) {
@@ -86,6 +76,16 @@ double area(const Polygon& polygon) {
     return 0.5 * twice;
 }
 
+// Corners around the faces: least and greatest x, y, z.
+constexpr size_t kFaces[6][4] = {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                 {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}};
+
+bool isInside(const std::array<Point, 8>& corners, double width, double height) {
+    return std::all_of(corners.begin(), corners.end(), [&](const Point& point) {
+        return point.x >= 0.0 && point.x <= width && point.y >= 0.0 && point.y <= height;
+    });
+}
+
 }  // namespace
 
 bool crossesNear(const View& view, const Box3d& box) {
@@ -95,14 +95,28 @@ bool crossesNear(const View& view, const Box3d& box) {
            view.nearModelUnits();
 }
 
+// The faces that the eye is in front of tile the outline.
 double boxPixels(const View& view, const Box3d& box) {
-    Polygon hull = convexHull(project(view, box).corners);
+    const std::array<Point, 8> corners = project(view, box).corners;
     const double width = view.camera().widthPx, height = view.camera().heightPx;
-    hull = clip(hull, 0, -1.0, 0.0);
-    hull = clip(hull, 0, 1.0, width);
-    hull = clip(hull, 1, -1.0, 0.0);
-    hull = clip(hull, 1, 1.0, height);
-    return std::max(area(hull), 0.0);
+    const bool isWhole = isInside(corners, width, height);
+    double pixels = 0.0;
+    for (size_t face = 0; face < 6; ++face) {
+        const auto axis = static_cast<glm::length_t>(face / 2);
+        const bool isSeen =
+            face % 2 == 0 ? view.eye()[axis] < box.min[axis] : view.eye()[axis] > box.max[axis];
+        if (!isSeen) continue;
+        Polygon quad;
+        for (const size_t corner : kFaces[face]) quad.add(corners[corner]);
+        if (!isWhole) {
+            quad = clip(quad, 0, -1.0, 0.0);
+            quad = clip(quad, 0, 1.0, width);
+            quad = clip(quad, 1, -1.0, 0.0);
+            quad = clip(quad, 1, 1.0, height);
+        }
+        pixels += std::abs(area(quad));
+    }
+    return pixels;
 }
 
 ScreenRect screenRect(const View& view, const Box3d& box) {
