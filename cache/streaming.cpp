@@ -51,7 +51,8 @@ void Streaming::beginFrame() {
 void Streaming::endFrame(bool isHeld) {
     requests_.send([&](const Request& request) {
         if (request.key.isBlock) return indexes_[request.key.database]->admit(request);
-        return !isHeld && residency_.admit(request);
+        const bool isRoot = request.key.id == ooc::NodeId::root().value;
+        return (isRoot || !isHeld) && residency_.admit(request);
     });
 }
 

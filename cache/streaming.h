@@ -34,8 +34,8 @@ public:
 
     // What has arrived is taken and, within the frame's bound, uploaded.
     void beginFrame();
-    // Requests of this frame are ranked and sent. With `isHeld` none is: the cut will not fit, and
-    // reading for it would be in vain.
+    // Requests of this frame are ranked and sent. With `isHeld` none but a root's page is: the
+    // cut will not fit, and reading for it would be in vain.
     void endFrame(bool isHeld = false);
     // Blocks until something has arrived; takes and uploads it. False when nothing is on its way:
     // what is missing cannot come (no room, or faults).

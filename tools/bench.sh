@@ -14,7 +14,10 @@
 # centre      plant 12M, interior 5M, lego-show-a; inside; 640x480; latency 0; all strategies;
 #             200 frames, 3 timed passes
 # variations  coh, bool, frustum over 60 frames: outside; 1024x768; paths at 4 times the speed;
-#             query latency 1, 2; and the scenes city 10M, torus 10M (with auto), hospital, clinic
+#             query latency 1, 2; prefetch; a disk of 500 MB/s, live (coh); and the scenes city 10M,
+#             torus 10M (with auto), hospital, clinic
+# Scenes are built with 2048 triangles a node, as in the paper of coherent HLOD culling; walks turn by
+# 1 degree a frame. Prefetch is off but where a run is about it: it would read what culling spares.
 # A run whose JSON is there is not repeated: delete it to measure again. Camera paths lie with the
 # results and are made once. Nothing else should run meanwhile.
 #
@@ -44,6 +47,7 @@ done
 data=$(realpath -m "${PAGODA_TEST_DATA:-../shared/data}")
 scenes=out/bench
 frames=200
+nodeTriangles=2048
 if [ "$mode" = quick ]; then
     scenes=out/bench/quick
     frames=20
@@ -88,21 +92,24 @@ make_scene() {
     say "scene $name"
     mkdir -p "$scenes"
     case $source in
-    /*) "$pagoda" build "$source" -o "$database" >&2 ;;
+    /*) "$pagoda" build "$source" -o "$database" --node-triangles $nodeTriangles >&2 ;;
     *)
         "$pagoda" generate "${source% *}" --triangles "${source#* }" -o "$scenes/$name.glb" \
             --force >&2 &&
-            "$pagoda" build "$scenes/$name.glb" -o "$database" --up z >&2 &&
+            "$pagoda" build "$scenes/$name.glb" -o "$database" --up z \
+                --node-triangles $nodeTriangles >&2 &&
             rm "$scenes/$name.glb" ;;
     esac
 }
 
 make_path() { # SCENE KIND
-    local path=$paths/$1-$2.json
+    local path=$paths/$1-$2.json speed=1
+    [ "$2" != walk ] || speed=0.25
     [ ! -f "$path" ] || return 0
     say "path $1-$2"
     mkdir -p "$paths"
-    "$pagoda" path "$scenes/$1.pagoda" --kind "$2" --frames "$frames" -o "$path" >&2
+    "$pagoda" path "$scenes/$1.pagoda" --kind "$2" --frames "$frames" --speed $speed \
+        -o "$path" >&2
 }
 
 # ---- Runs
@@ -137,6 +144,7 @@ measure() { # as run, in steps that stop at the first failure
     shift 3
     make_scene "$scene" && make_path "$scene" "$kind" || return 1
     say "$name"
+    [[ " $* " == *" --prefetch "* ]] || set -- "$@" --prefetch off
     "$pagoda" bench "$scenes/$scene.pagoda" --path "$paths/$scene-$kind.json" "$@" \
         --json "$scenes/$name.json.part" --html "$results/$name.html"
 }
@@ -169,7 +177,7 @@ quick() {
 centre() {
     local scene
     for scene in plant interior lego-show-a; do
-        run $scene-walk $scene walk --strategy "$all" --repeats 3
+        run $scene-walk $scene walk --strategy "$all" --repeats 3 --truth-every 4
     done
 }
 
@@ -182,6 +190,12 @@ variations() {
         run $scene-walk-speed4 $scene walk --strategy $few --frames 60 --speed 4
         run $scene-walk-latency1 $scene walk --strategy $few --frames 60 --query-latency 1
         run $scene-walk-latency2 $scene walk --strategy $few --frames 60 --query-latency 2
+        run $scene-walk-prefetch $scene walk --strategy coh --frames 60 --prefetch on --repeats 0 \
+            --truth-every 0
+        run $scene-walk-disk500 $scene walk --strategy coh --prefetch on --repeats 0 \
+            --truth-every 0 --no-settled --disk 500MB/s
+        run $scene-walk-disk500-off $scene walk --strategy coh --repeats 0 --truth-every 0 \
+            --no-settled --disk 500MB/s
     done
     for scene in city torus hospital clinic; do
         inside=$(inside_of $scene)

@@ -45,6 +45,10 @@ public:
         hasBegun_ = false;
     }
 
+    [[nodiscard]] bool learnsWhatIsHidden() const override {
+        return candidates_[current_].strategy->learnsWhatIsHidden();
+    }
+
 private:
     static constexpr size_t kCoh = 0, kHzb = 1, kFrustum = 2;
     struct Candidate {

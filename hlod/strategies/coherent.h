@@ -51,6 +51,7 @@ public:
     explicit CoherentStrategy(const CoherentRules& rules) : rules_(rules) {}
     void traverse(FrameContext& frame) override;
     void forget() override { memory_.clear(); }
+    [[nodiscard]] bool learnsWhatIsHidden() const override { return true; }
 
 private:
     enum class Prediction : uint8_t { Refine, Stop, Delay };

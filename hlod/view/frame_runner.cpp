@@ -152,12 +152,12 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
     const double drawnMs = nowMs();
     record.drawMs += drawnMs - traversedMs;
 
-    controlTau(camera, options);
+    const bool maySend = controlTau(camera, strategy, options);
     if (doesPrefetch_) {
         prefetcher_.run(camera, sceneBox_, record.effectiveTauPx, tree_, streaming_.residency());
         record.prefetchOff = prefetcher_.offText();
     }
-    streaming_.endFrame(!tauControl_.fits());
+    streaming_.endFrame(!maySend);
     record.streamMs += nowMs() - drawnMs;
     record.simulatedStallMs = static_cast<double>(late_.stalledFrames()) * frameMs_;
     frameMs_ = record.frameMs = nowMs() - beginMs;
@@ -185,7 +185,10 @@ void FrameRunner::wantRoot(const Node& root) {
         streaming_.residency().want({root.page(), *root.record, kRootPriority}, false));
 }
 
-void FrameRunner::controlTau(const Camera& camera, const FrameOptions& options) {
+// On a cold start nothing hides anything, and the cut is many times what it will be: tau waits as
+// long as pages come, at most one budget's worth, nearest and largest first.
+bool FrameRunner::controlTau(const Camera& camera, const Strategy& strategy,
+                             const FrameOptions& options) {
     const bool isMissing = streaming_.missing() > 0;
     // Since the last frame's look: what arrives between frames counts.
     const Progress now = progress();
@@ -195,8 +198,17 @@ void FrameRunner::controlTau(const Camera& camera, const FrameOptions& options) 
     const bool isStuck = framesWithoutProgress_ >= kStuckFrames;
     if (isStuck) framesWithoutProgress_ = 0;
     const cache::Residency& residency = streaming_.residency();
-    tauControl_.update({options.tauPx, residency.demandBytes(), residency.gpuBudgetBytes(), isStuck,
-                        lastCamera_ == camera});
+    const uint64_t budgetBytes = residency.gpuBudgetBytes();
+    const uint64_t uploadedBytes = residency.counters().bytesUploaded;
+    if (tauControl_.fits()) {
+        uploadedWhenItFitted_ = uploadedBytes;
+        hasLearnt_ = false;
+    }
+    hasLearnt_ = hasLearnt_ || isStuck || uploadedBytes - uploadedWhenItFitted_ >= budgetBytes;
+    const bool isLearning = isMissing && strategy.learnsWhatIsHidden() && !hasLearnt_;
+    tauControl_.update({options.tauPx, residency.demandBytes(), budgetBytes, isStuck,
+                        lastCamera_ == camera, isLearning, isMissing});
+    return tauControl_.fits() || isLearning;
 }
 
 void FrameRunner::account(FrameRecord& record, const cache::Residency::Counters& before) {
@@ -240,7 +252,8 @@ FrameRecord FrameRunner::settle(const Camera& camera, Strategy& strategy,
         if (record.isSettled) probeLevels = options.probeLevels;
         // Nothing on its way: either the next frame asks for more, or tau control must act.
         if (record.missingPages > 0) static_cast<void>(streaming_.waitForArrival());
-        completeFrames = record.missingPages > 0 ? 0 : completeFrames + 1;
+        const bool isComplete = record.missingPages == 0 && !tauControl_.isMoving();
+        completeFrames = isComplete ? completeFrames + 1 : 0;
     }
     record.faults.clear();
     account(record, before);

@@ -58,7 +58,9 @@ private:
     };
     [[nodiscard]] Progress progress();
     void wantRoot(const Node& root);
-    void controlTau(const Camera& camera, const FrameOptions& options);
+    // May what is missing be sent for?
+    [[nodiscard]] bool controlTau(const Camera& camera, const Strategy& strategy,
+                                  const FrameOptions& options);
     void account(FrameRecord& record, const cache::Residency::Counters& before);
 
     cache::Streaming& streaming_;
@@ -74,6 +76,8 @@ private:
     Progress lastProgress_;
     std::optional<FrameRecord> lastRecord_;
     uint64_t lastToldHash_ = 0, lastDrawnHash_ = 0;
+    uint64_t uploadedWhenItFitted_ = 0;  // bytes ever, when the cut last did
+    bool hasLearnt_ = false;             // since then
     int framesWithoutProgress_ = 0, framesDrawnTheSame_ = 0;
     double frameMs_ = 0.0;  // of the last frame: what a late answer's frame would have taken
 };

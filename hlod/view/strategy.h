@@ -65,6 +65,8 @@ public:
     virtual void traverse(FrameContext& frame) = 0;
     // Drops what earlier frames taught: the next one begins as the first.
     virtual void forget() {}
+    // Does it want less once more of the scene is there to hide the rest?
+    [[nodiscard]] virtual bool learnsWhatIsHidden() const { return false; }
 };
 
 // How urgent a page is: visible pixels weighed by how far its stand-in's error exceeds what is

@@ -35,14 +35,16 @@ double TauControl::effectiveTauPx(double tauPx) const noexcept {
 }
 
 void TauControl::update(const Frame& frame) {
-    fits_ = share(frame) <= 1.0;
+    fits_ = share(frame) <= 1.0 || !frame.isMissing;
     isMoving_ = false;
     if (!frame.isSameView) {
         tooFine_ *= kForgetStep;
         forgotten_ = 0;
     }
     forgetWhenCheaper(frame);
-    if (!fits_ || frame.isStuck) {
+    if (!fits_ && frame.isLearning) {
+        isMoving_ = true;
+    } else if (!fits_ || frame.isStuck) {
         raise(frame);
     } else {
         lastRaisedBytes_ = UINT64_MAX;

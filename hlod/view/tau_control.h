@@ -14,6 +14,8 @@ public:
         uint64_t budgetBytes = 0;
         bool isStuck = false;     // something is missing and nothing can come: gaps, pins
         bool isSameView = false;  // as in the frame before
+        bool isLearning = false;  // what is on its way may show that much is hidden: wait for it
+        bool isMissing = true;    // not all of the cut is there
     };
 
     // Of the next frame, once update() has been called; never below what is asked for.

@@ -60,6 +60,32 @@ TEST_P(TightBudget, OfAFractionOfTheNeedSettlesAndIsNeverExceeded) {
     }
 }
 
+// From a cold start nothing is known to be hidden, and all in sight wants far more than that.
+TEST_P(TightBudget, OfWhatIsSeenIsEnough) {
+    const auto strategy = makeStrategy(GetParam());
+    if (!strategy->learnsWhatIsHidden()) GTEST_SKIP() << "wants all that is in sight";
+    int views = 0;
+    for (int i = 0; i < 10; ++i) {
+        const Camera camera = rooms().walk(i, 10);
+        const uint64_t seen = neededBytes(camera, GetParam());
+        const uint64_t budget = std::max(3 * seen, 3 * rootBytes());
+        if (budget > neededBytes(camera, "frustum")) continue;  // hardly anything is hidden
+        ++views;
+        Rig rig(rooms(), {.gpuBytes = budget});
+        strategy->forget();
+        FrameRecord record;
+        int frames = 0;
+        double mostTauPx = 0.0;
+        while (!record.isSettled && ++frames < 100) {
+            record = rig.live(camera, *strategy, 1.0);
+            mostTauPx = std::max(mostTauPx, record.effectiveTauPx);
+        }
+        EXPECT_TRUE(record.isSettled) << i;
+        EXPECT_LT(mostTauPx, 2.0) << i;
+    }
+    EXPECT_GT(views, 2);
+}
+
 // The view jumps in every frame: all is thrown away and asked for again.
 TEST_P(TightBudget, SurvivesATeleportEveryFrameWithoutHoles) {
     Rig rig(rooms(), {.gpuBytes = 2 * rootBytes(), .disk = cache::parseDiskProfile("2MB/s,20ms")});
