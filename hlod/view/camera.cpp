@@ -86,7 +86,14 @@ Camera frameBox(const Camera& camera, const Box3d& box, const Vec3d& direction, 
     const Vec3d above = upVector(up);
     const bool isVertical = std::abs(glm::dot(direction, above)) > 0.999;
     const Vec3d intoFront = up == UpAxis::Y ? Vec3d(0, 0, -1) : Vec3d(0, 1, 0);
-    framed.up = isVertical ? intoFront * (glm::dot(direction, above) > 0 ? 1.0 : -1.0) : above;
+    const double side = glm::dot(direction, above) > 0 ? 1.0 : -1.0;
+    return frameBox(camera, box, direction, isVertical ? intoFront * side : above);
+}
+
+Camera frameBox(const Camera& camera, const Box3d& box, const Vec3d& direction, const Vec3d& up) {
+    Camera framed = camera;
+    const Vec3d centre = box.isEmpty() ? Vec3d(0.0) : 0.5 * (box.min + box.max);
+    framed.up = up;
     const Axes axes = makeAxes(-direction, framed.up);
     const double tanY = std::tan(glm::radians(camera.fovyDegrees) / 2) * kFrameFill;
     const double tanX = tanY * camera.widthPx / camera.heightPx;

@@ -41,6 +41,9 @@ enum class UpAxis { Y, Z };
 // An empty box or one without extent is looked at from one unit away. Size and fovy are kept.
 [[nodiscard]] Camera frameBox(const Camera& camera, const Box3d& box, const Vec3d& direction,
                               UpAxis up);
+// The same with any vector as the picture's up.
+[[nodiscard]] Camera frameBox(const Camera& camera, const Box3d& box, const Vec3d& direction,
+                              const Vec3d& up);
 
 // A camera fixed for a frame: orthonormal axes, frustum and pixel scale.
 class View {
