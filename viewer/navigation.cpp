@@ -9,13 +9,14 @@ namespace {
 
 constexpr double kZoomPerStep = 0.85;
 constexpr double kMostZoom = 20;                     // of one call or one height of the picture
-constexpr double kTurnPerHeight = std::numbers::pi;  // radians, as F3D and VTK have it
+constexpr double kTurnPerHeight = std::numbers::pi;  // radians
 constexpr double kLevelPx = 200;                     // a turn this long takes all roll away
 // View puts its near plane at a millionth of the scene's diagonal when the eye is close: what the
 // eye zooms to stays behind it, in the picture's corners too.
 constexpr double kLeastShare = 4e-6;
 constexpr double kFarDiagonals = 1e4;  // zooming out ends here
-constexpr double kTargetPrecision = 1e-5;
+// Of the eye's coordinates: nearer, the target's rounding would show in the direction of view.
+constexpr double kTargetShare = 1e-9;
 
 double largest(const Vec3d& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
@@ -42,7 +43,7 @@ void Navigation::adopt(const hlod::Camera& camera) {
     axes_ = axesOf(frame_, pose_.attitude);
     // A target close to an eye far from the origin would make the direction of view jitter.
     targetModelUnits_ =
-        std::max(glm::length(camera.target - camera.eye), kTargetPrecision * largest(camera.eye));
+        std::max(glm::length(camera.target - camera.eye), kTargetShare * largest(camera.eye));
     hasChanged_ = true;
 }
 
