@@ -228,12 +228,15 @@ TEST(Navigation, ATargetBesideTheEyeFarFromTheOriginDoesNotMakeThePictureShake) 
     Navigation navigation = place.navigation();
     navigation.jumpTo(near);
     EXPECT_EQ(navigation.camera(), near);
-    navigation.beginDrag(DragKind::Pan, {400, 300}, std::nullopt);
+    navigation.beginDrag(DragKind::Look, {400, 300}, std::nullopt);
     navigation.dragTo({401, 300});
     const Vec3d ahead = test::axesOf(navigation.camera()).forward;
     for (int i = 0; i < 100; ++i) {
-        navigation.dragTo({400 + 3.3 * i, 300 - 2.7 * i});
-        EXPECT_LE(glm::length(test::axesOf(navigation.camera()).forward - ahead), 1e-6);
+        const double turnedPx = 0.01 * i;
+        navigation.dragTo({401 + turnedPx, 300});
+        const Vec3d now = test::axesOf(navigation.camera()).forward;
+        const double radiansPerPx = std::numbers::pi / 600 / 4;  // 45 of 180 degrees
+        EXPECT_NEAR(glm::length(now - ahead), turnedPx * radiansPerPx, 1e-6);
     }
 }
 
