@@ -8,7 +8,7 @@ get_property(libraries GLOBAL PROPERTY PAGODA_LIBRARIES)
 foreach(name IN LISTS libraries)
   get_target_property(folder pagoda_${name} SOURCE_DIR)
   cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
-  if(folder MATCHES "^tools")
+  if(folder MATCHES "^(tools|viewer/window)")  # the program's own
     continue()
   elseif(folder MATCHES "^viewer")
     set(export PagodaViewerTargets)
@@ -33,7 +33,7 @@ if(PAGODA_VIEWER)
 endif()
 # Headers include each other from the repository root, so that root is include/pagoda.
 install(DIRECTORY ${header_folders} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pagoda
-  FILES_MATCHING PATTERN "*.h" PATTERN "*.inl")
+  FILES_MATCHING PATTERN "*.h" PATTERN "*.inl" PATTERN "viewer/window" EXCLUDE)
 
 configure_package_config_file(cmake/PagodaConfig.cmake.in PagodaConfig.cmake
   INSTALL_DESTINATION ${package_dir})

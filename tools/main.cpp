@@ -56,6 +56,9 @@ void addCommands(CLI::App& app, Session& session) {
     addExtractCommand(app, session);
 #ifdef PAGODA_HAS_VIEWER
     addRenderCommand(app, session);
+#ifdef PAGODA_HAS_WINDOW
+    addViewCommand(app, session);
+#endif
     addBenchCommand(app, session);
     addStressCommand(app, session);
 #endif

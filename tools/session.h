@@ -30,7 +30,8 @@ void addInfoCommand(CLI::App& app, Session& session);
 void addVerifyCommand(CLI::App& app, Session& session);
 void addExtractCommand(CLI::App& app, Session& session);
 void addRenderCommand(CLI::App& app, Session& session);  // with PAGODA_HAS_VIEWER only
-void addBenchCommand(CLI::App& app, Session& session);   // the same
+void addViewCommand(CLI::App& app, Session& session);    // with PAGODA_HAS_WINDOW only
+void addBenchCommand(CLI::App& app, Session& session);   // as render
 void addStressCommand(CLI::App& app, Session& session);  // the same
 void addGenerateCommand(CLI::App& app, Session& session);
 void addPathCommand(CLI::App& app, Session& session);

@@ -140,6 +140,40 @@ void FrameTarget::readDepths(std::vector<float>& depths) const {
     glReadPixels(0, 0, widthPx_, heightPx_, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
 }
 
+PixelSample FrameTarget::sample(int xPx, int yPx) const {
+    PixelSample result;
+    if (xPx < 0 || yPx < 0 || xPx >= widthPx_ || yPx >= heightPx_) return result;
+    const GLint row = heightPx_ - 1 - yPx;
+    const auto read = [&](const GlTexture& texture, GLenum format, GLenum type, auto& value) {
+        glGetTextureSubImage(texture.id(), 0, xPx, row, 0, 1, 1, 1, format, type, sizeof value,
+                             &value);
+    };
+    read(depth_, GL_DEPTH_COMPONENT, GL_FLOAT, result.reversedDepth);
+    read(nodeOrdinals_, GL_RED_INTEGER, GL_UNSIGNED_INT, result.nodeOrdinal);
+    read(triangles_, GL_RED_INTEGER, GL_UNSIGNED_INT, result.triangle);
+    return result;
+}
+
+void FrameTarget::beginOverlay() {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
+    glViewport(0, 0, widthPx_, heightPx_);
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glEnable(GL_FRAMEBUFFER_SRGB);
+    beginTranslucent();
+}
+
+void FrameTarget::blitToWindow(int widthPx, int heightPx) const {
+    // With conversion off, bytes that are sRGB already are copied as they are.
+    glDisable(GL_FRAMEBUFFER_SRGB);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.id());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    glColorMaski(0, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    const bool isSameSize = widthPx == widthPx_ && heightPx == heightPx_;
+    glBlitFramebuffer(0, 0, widthPx_, heightPx_, 0, 0, widthPx, heightPx, GL_COLOR_BUFFER_BIT,
+                      isSameSize ? GL_NEAREST : GL_LINEAR);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
 Picture FrameTarget::read(double nearModelUnits) const {
     Picture picture;
     picture.widthPx = widthPx_;

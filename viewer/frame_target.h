@@ -9,6 +9,13 @@
 
 namespace pagoda::viewer {
 
+// What was drawn at one pixel.
+struct PixelSample {
+    float reversedDepth = 0.0f;  // near / distance along the view; 0: no opaque surface
+    uint32_t nodeOrdinal = 0;    // 0: none
+    uint32_t triangle = 0;       // its number in the node's page; beyond them, zippers
+};
+
 class FrameTarget {
 public:
     // Throws Error when the driver has no textures of that size.
@@ -27,6 +34,14 @@ public:
 
     // The depths alone, reversed as they are stored, rows from bottom to top. Waits for the GPU.
     void readDepths(std::vector<float>& depths) const;
+
+    // Of the last frame, y from the top. Outside the picture: nothing.
+    [[nodiscard]] PixelSample sample(int xPx, int yPx) const;
+
+    // Binds it for colour alone: overlays, over what has been drawn and behind what is nearer.
+    void beginOverlay();
+    // Copies the colours to the window's own framebuffer, which is bound afterwards.
+    void blitToWindow(int widthPx, int heightPx) const;
 
     [[nodiscard]] int widthPx() const noexcept { return widthPx_; }
     [[nodiscard]] int heightPx() const noexcept { return heightPx_; }

@@ -50,6 +50,7 @@ void GlDevice::beginFrame(const hlod::View& view) {
         target_.reset();
         target_ = std::make_unique<FrameTarget>(camera.widthPx, camera.heightPx);
     }
+    view_ = &view;
     eyeModel_ = view.eye();
     nearModelUnits_ = view.nearModelUnits();
     ordinals_.clear();
@@ -74,7 +75,11 @@ uint32_t GlDevice::ordinalOf(const hlod::Node& node) {
 }
 
 void GlDevice::draw(const hlod::Node& node) {
-    gathered_.push_back({node.page(), ordinalOf(node)});
+    gathered_.push_back({node.page(), ordinalOf(node), tintOf(node)});
+}
+
+glm::u8vec4 GlDevice::tintOf(const hlod::Node& node) const {
+    return tint_ && view_ != nullptr ? tint_(node, *view_) : glm::u8vec4(0);
 }
 
 void GlDevice::flush() {
@@ -84,7 +89,10 @@ void GlDevice::flush() {
     std::sort(gathered_.begin(), gathered_.end(),
               [](const DrawItem& a, const DrawItem& b) { return a.page < b.page; });
     drawnNodes_ += gathered_.size();
+    // Boxes of queries are filled all the same.
+    if (isWireframe_) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
     drawnTriangles_ += drawer_.drawOpaque(gathered_);
+    if (isWireframe_) glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
     gathered_.clear();
     drawMs_ += watch.lapMs();
 }
@@ -110,7 +118,9 @@ void GlDevice::drawZippers(const hlod::FrameCut& cut, hlod::FrameRecord& record)
               [](const hlod::Node& a, const hlod::Node& b) { return a.page() < b.page(); });
     std::vector<DrawItem> items;
     for (const hlod::Node& node : nodes) {
-        if (store_.contains(node.page())) items.push_back({node.page(), ordinalOf(node)});
+        if (store_.contains(node.page())) {
+            items.push_back({node.page(), ordinalOf(node), tintOf(node)});
+        }
     }
     const auto isRefined = [&](cache::PageId page) { return cut.refined(page); };
     record.drawnTriangles += drawer_.drawZippers(items, isRefined, record.drawnZippers);
@@ -118,7 +128,7 @@ void GlDevice::drawZippers(const hlod::FrameCut& cut, hlod::FrameRecord& record)
 
 void GlDevice::drawTranslucent(std::span<const hlod::Node> order, hlod::FrameRecord& record) {
     std::vector<DrawItem> items;
-    for (const hlod::Node& node : order) items.push_back({node.page(), 0});
+    for (const hlod::Node& node : order) items.push_back({node.page(), 0, tintOf(node)});
     if (!isBackgroundPainted_) target_->paintBackground();
     isBackgroundPainted_ = true;
     target_->beginTranslucent();
@@ -136,7 +146,13 @@ void GlDevice::endFrame(const hlod::FrameCut& cut, hlod::FrameRecord& record) {
     drawTranslucent(translucentBackToFront(cut.drawn(), eyeModel_), record);
     glFinish();
     throwOnGlError("drawing a frame");
+    view_ = nullptr;
     record.queries += queries_.queriesThisFrame();
+}
+
+std::optional<ooc::NodeId> GlDevice::nodeOf(uint32_t ordinal) const {
+    if (ordinal == 0 || ordinal > ordinals_.size()) return std::nullopt;
+    return ordinals_[ordinal - 1];
 }
 
 Picture GlDevice::read() const {

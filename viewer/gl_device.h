@@ -10,11 +10,16 @@
 #include "viewer/mesh_store.h"
 #include "viewer/node_drawer.h"
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace pagoda::viewer {
+
+// What a node is painted with instead of the model's colours: DrawInstance::tint.
+using NodeTint = std::function<glm::u8vec4(const hlod::Node&, const hlod::View&)>;
 
 class GlDevice final : public hlod::Device {
 public:
@@ -24,6 +29,8 @@ public:
     [[nodiscard]] MeshStore& store() noexcept { return store_; }
     // Holds from the next frame on.
     void setLook(const Background& background, const Vec3f& worldUp);
+    void setTint(NodeTint tint) { tint_ = std::move(tint); }  // empty: the model's colours
+    void setWireframe(bool isOn) noexcept { isWireframe_ = isOn; }
 
     void beginFrame(const hlod::View& view) override;
     void draw(const hlod::Node& node) override;
@@ -39,11 +46,16 @@ public:
 
     // The last frame's picture.
     [[nodiscard]] Picture read() const;
+    // What the last frame was drawn into; null before the first.
+    [[nodiscard]] FrameTarget* target() noexcept { return target_.get(); }
+    // The node that PixelSample::nodeOrdinal names in the last frame; nothing for 0.
+    [[nodiscard]] std::optional<ooc::NodeId> nodeOf(uint32_t ordinal) const;
 
 private:
     void flush();
     void restoreState();
     [[nodiscard]] uint32_t ordinalOf(const hlod::Node& node);
+    [[nodiscard]] glm::u8vec4 tintOf(const hlod::Node& node) const;
     void drawZippers(const hlod::FrameCut& cut, hlod::FrameRecord& record);
 
     ooc::Lattice lattice_;
@@ -55,6 +67,9 @@ private:
     std::unique_ptr<FrameTarget> target_;
     Background background_;
     Vec3f worldUp_{0, 1, 0};
+    NodeTint tint_;
+    bool isWireframe_ = false;
+    const hlod::View* view_ = nullptr;  // of this frame, until it ends
     LatticeView latticeView_;
     Vec3d eyeModel_{0.0};
     double nearModelUnits_ = 1.0;

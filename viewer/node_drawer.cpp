@@ -39,7 +39,7 @@ uint64_t NodeDrawer::drawOpaque(std::span<const DrawItem> items) {
     uint64_t triangles = 0;
     for (const DrawItem& item : items) {
         const GpuPage& page = store_.page(item.page);
-        add(page, {page.firstIndex, page.opaqueTriangles, 0, page.firstNormal}, item.nodeOrdinal);
+        add(page, {page.firstIndex, page.opaqueTriangles, 0, page.firstNormal}, item);
         triangles += page.opaqueTriangles;
     }
     submit();
@@ -59,7 +59,7 @@ uint64_t NodeDrawer::drawZippers(std::span<const DrawItem> items,
             add(page,
                 {page.firstIndex + 3 * strip.firstTriangle, strip.triangleCount,
                  strip.firstTriangle, firstNormal},
-                item.nodeOrdinal);
+                item);
             triangles += strip.triangleCount;
             ++stripCount;
         }
@@ -75,7 +75,7 @@ uint64_t NodeDrawer::drawTranslucent(std::span<const DrawItem> items) {
         const GpuPage& page = store_.page(item.page);
         const auto count = static_cast<uint32_t>(page.translucentCentroids.size());
         add(page, {static_cast<uint32_t>(sortedIndices_.size()), count, 0, GpuPage::kNoNormals},
-            item.nodeOrdinal);
+            item);
         appendSorted(page);
         triangles += count;
     }
@@ -98,13 +98,13 @@ void NodeDrawer::appendSorted(const GpuPage& page) {
     }
 }
 
-void NodeDrawer::add(const GpuPage& page, const Range& range, uint32_t nodeOrdinal) {
+void NodeDrawer::add(const GpuPage& page, const Range& range, const DrawItem& item) {
     if (range.triangleCount == 0) return;
     const auto instance = static_cast<uint32_t>(instances_.size());
     commands_.push_back({3 * range.triangleCount, 1, range.firstIndex,
                          static_cast<int32_t>(page.baseVertex), instance});
-    instances_.push_back(
-        {view_.offsetOf(page.origin), nodeOrdinal, range.firstTriangle, range.firstNormal});
+    instances_.push_back({view_.offsetOf(page.origin), item.nodeOrdinal, range.firstTriangle,
+                          range.firstNormal, item.tint});
     chunks_.push_back(page.chunk);
 }
 

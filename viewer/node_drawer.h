@@ -16,6 +16,7 @@ namespace pagoda::viewer {
 struct DrawItem {
     cache::PageId page;
     uint32_t nodeOrdinal = 0;  // >= 1
+    glm::u8vec4 tint{0};       // DrawInstance
 };
 
 class NodeDrawer {
@@ -46,7 +47,7 @@ private:
     struct Range {
         uint32_t firstIndex, triangleCount, firstTriangle, firstNormal;
     };
-    void add(const GpuPage& page, const Range& range, uint32_t nodeOrdinal);
+    void add(const GpuPage& page, const Range& range, const DrawItem& item);
     // Draws what was added; indices come from the chunk, or from `indexBuffer` when it is not 0.
     void submit(GlId indexBuffer = 0);
     void appendSorted(const GpuPage& page);

@@ -16,6 +16,7 @@ layout(location = 1) in vec4 colourSrgb;
 layout(location = 2) in ivec2 normalOct;       // v = -128: none
 layout(location = 3) in ivec3 offsetSteps;     // of the page's origin from the camera's cell
 layout(location = 4) in uvec3 ordinalAndFirsts;
+layout(location = 5) in vec4 tintSrgb;
 
 layout(location = 0) uniform vec3 eye;         // from the camera's cell, in steps
 layout(location = 1) uniform vec3 rowX;
@@ -52,6 +53,7 @@ void main() {
     fromEye = relative;
     normal = decodeNormal(normalOct);
     albedo = vec4(linearFromSrgb(colourSrgb.rgb), colourSrgb.a);
+    if (tintSrgb.a > 0.0) albedo.rgb = mix(albedo.rgb, linearFromSrgb(tintSrgb.rgb), tintSrgb.a);
     ids = ordinalAndFirsts;
 }
 )";
@@ -170,7 +172,8 @@ GlVertexArray makeNodeVertexArray() {
     glVertexArrayAttribIFormat(id, 2, 2, GL_BYTE, offsetof(GpuVertex, normalU));
     glVertexArrayAttribIFormat(id, 3, 3, GL_INT, offsetof(DrawInstance, offset));
     glVertexArrayAttribIFormat(id, 4, 3, GL_UNSIGNED_INT, offsetof(DrawInstance, nodeOrdinal));
-    for (GLuint attribute = 0; attribute < 5; ++attribute) {
+    glVertexArrayAttribFormat(id, 5, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(DrawInstance, tint));
+    for (GLuint attribute = 0; attribute < 6; ++attribute) {
         glEnableVertexArrayAttrib(id, attribute);
         glVertexArrayAttribBinding(id, attribute, attribute < 3 ? 0 : 1);
     }

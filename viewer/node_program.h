@@ -18,14 +18,15 @@ struct GpuVertex {
 };
 static_assert(sizeof(GpuVertex) == 20);
 
-// What one draw adds to its vertices, as instanced attributes. 24 bytes.
+// What one draw adds to its vertices, as instanced attributes. 28 bytes.
 struct DrawInstance {
     Vec3i offset;            // LatticeView::offsetOf()
     uint32_t nodeOrdinal;    // written to the item buffer; 0 is background
     uint32_t firstTriangle;  // added to the triangle's number within the draw
     uint32_t firstNormal;    // word of the draw's first triangle's normal; UINT32_MAX: none stored
+    glm::u8vec4 tint{0};     // sRGB, painted over the vertices' colours as far as alpha says
 };
-static_assert(sizeof(DrawInstance) == 24);
+static_assert(sizeof(DrawInstance) == 28);
 
 // Where the shader finds the normals: the chunk's buffer, as 32-bit words.
 inline constexpr uint32_t kNormalsBinding = 0;

@@ -62,6 +62,7 @@ public:
     // The last frame's picture; fills in record.coveredPixels and fallbackPixels.
     [[nodiscard]] Picture read(hlod::FrameRecord& record);
     [[nodiscard]] hlod::FrameRunner& runner() noexcept { return runner_; }
+    [[nodiscard]] GlDevice& device() noexcept { return device_; }
 
 private:
     cache::WallClock wallClock_;

@@ -1,0 +1,17 @@
+// node_colours.h: what a node is painted with, to see what a traversal does. Pure functions.
+#pragma once
+
+#include "viewer/gl_device.h"
+#include "viewer/window/view_settings.h"
+
+namespace pagoda::viewer {
+
+// Empty for the model's own colours.
+[[nodiscard]] NodeTint tintOf(Colouring colouring, double tauPx);
+
+// sRGB, opaque; distinct for neighbouring levels.
+[[nodiscard]] glm::u8vec3 levelColour(int depth);
+// From blue (no error) over green to red (`share` of what is allowed is 1).
+[[nodiscard]] glm::u8vec3 errorColour(double share);
+
+}  // namespace pagoda::viewer

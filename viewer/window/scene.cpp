@@ -1,0 +1,184 @@
+#include "viewer/window/scene.h"
+
+#include "viewer/window/node_colours.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace pagoda::viewer {
+namespace {
+
+// Coarser than that, a moving picture says too little; it rather comes slower.
+constexpr double kGreatestMovingTauPx = 16.0;
+
+// The model's point that `sample` shows at the pixel's centre.
+struct SeenPoint {
+    Vec3d pointModel;
+    double distanceModelUnits;
+};
+SeenPoint pointOf(const PixelSample& sample, const hlod::View& view, int xPx, int yPx) {
+    const hlod::Camera& camera = view.camera();
+    const double along = view.nearModelUnits() / static_cast<double>(sample.reversedDepth);
+    const double x = 2.0 * (xPx + 0.5) / camera.widthPx - 1.0;
+    const double y = 1.0 - 2.0 * (yPx + 0.5) / camera.heightPx;
+    const Vec3d ray =
+        view.forward() + view.right() * (x * view.tanX()) + view.up() * (y * view.tanY());
+    return {view.eye() + ray * along, along};
+}
+
+}  // namespace
+
+hlod::UpAxis upAxisOf(const ooc::Database& database) {
+    const auto metadata = nlohmann::json::parse(database.metadataJson(), nullptr, false);
+    const bool isY = metadata.is_object() && metadata.contains("up") && metadata["up"] == "y";
+    return isY ? hlod::UpAxis::Y : hlod::UpAxis::Z;
+}
+
+Scene::Scene(const std::filesystem::path& path, const RendererOptions& options)
+    : database_(ooc::Database::open(path)), source_(database_), up_(upAxisOf(database_)) {
+    restart(options);
+    triangles_ = renderer_->runner().root().record->subtreeTriangles;
+}
+
+Scene::~Scene() = default;
+
+void Scene::restart(const RendererOptions& options) {
+    frozen_.reset();
+    strategy_.reset();
+    renderer_.reset();  // its GPU memory goes before new one is asked for
+    renderer_ = std::make_unique<Renderer>(database_.header().lattice, source_, options);
+    record_ = {};
+}
+
+std::string Scene::name() const {
+    return std::filesystem::path(database_.path()).stem().string();
+}
+
+std::vector<std::string> Scene::faults() const {
+    std::vector<std::string> faults = record_.faults;
+    if (!database_.headerFault().empty()) faults.push_back("header: " + database_.headerFault());
+    if (!database_.metadataFault().empty()) {
+        faults.push_back("metadata: " + database_.metadataFault());
+    }
+    return faults;
+}
+
+hlod::Strategy& Scene::strategyFor(const ViewSettings& settings) {
+    if (frozen_) return *frozen_;
+    if (!strategy_ || strategyName_ != settings.strategy) {
+        strategy_ = hlod::makeStrategy(settings.strategy, settings.strategyOptions);
+        strategyName_ = settings.strategy;
+    }
+    return *strategy_;
+}
+
+double Scene::tauFor(const ViewSettings& settings, bool isMoving) {
+    isCoarsened_ = false;
+    if (!settings.holdsFrameRate || frozen_) return settings.tauPx;
+    if (!rateControl_ || rateTargetFps_ != settings.targetFps) {
+        rateTargetFps_ = settings.targetFps;
+        rateControl_.emplace(hlod::FrameRateControl::Options{
+            .targetMs = 1000.0 / settings.targetFps, .greatestTauPx = kGreatestMovingTauPx});
+    }
+    if (!isMoving) return settings.tauPx;
+    const double tauPx = rateControl_->tauPx(settings.tauPx);
+    isCoarsened_ = tauPx > settings.tauPx;
+    return tauPx;
+}
+
+void Scene::setTint(const ViewSettings& settings) {
+    renderer_->device().setTint(
+        tintOf(settings.colouring, record_.effectiveTauPx > 0 ? record_.effectiveTauPx : 1.0));
+    renderer_->device().setWireframe(settings.isWireframe);
+}
+
+const hlod::FrameRecord& Scene::draw(const hlod::Camera& camera, const ViewSettings& settings,
+                                     bool isMoving) {
+    RenderOptions options;
+    options.tauPx = tauFor(settings, isMoving);
+    options.worldUp = up_ == hlod::UpAxis::Y ? Vec3f(0, 1, 0) : Vec3f(0, 0, 1);
+    setTint(settings);
+    renderer_->runner().setPrefetch(settings.runtime.doesPrefetch && !frozen_);
+    hlod::Strategy& strategy = strategyFor(settings);
+    record_ = renderer_->renderLive(camera, strategy, options);
+    record_.strategy = frozen_ ? "frozen" : settings.strategy;
+    if (rateControl_ && isMoving && settings.holdsFrameRate && !frozen_) {
+        rateControl_->update({.tauPx = settings.tauPx,
+                              .effectiveTauPx = record_.effectiveTauPx,
+                              .measuredMs = record_.frameMs,
+                              .isSameView = camera == camera_});
+    }
+    camera_ = camera;
+    return record_;
+}
+
+void Scene::freeze() {
+    frozen_ = std::make_unique<FrozenCut>(renderer_->runner().cut(), camera_);
+}
+
+void Scene::thaw() {
+    frozen_.reset();
+}
+
+std::optional<Vec3d> Scene::surfaceAt(glm::dvec2 px) {
+    FrameTarget* const target = renderer_->device().target();
+    if (target == nullptr) return std::nullopt;
+    const int x = static_cast<int>(px.x), y = static_cast<int>(px.y);
+    const PixelSample sample = target->sample(x, y);
+    if (!(sample.reversedDepth > 0.0f)) return std::nullopt;
+    return pointOf(sample, hlod::View(camera_, box()), x, y).pointModel;
+}
+
+std::optional<Pick> Scene::pick(glm::dvec2 px) {
+    FrameTarget* const target = renderer_->device().target();
+    if (target == nullptr) return std::nullopt;
+    const int x = static_cast<int>(px.x), y = static_cast<int>(px.y);
+    const PixelSample sample = target->sample(x, y);
+    const std::optional<ooc::NodeId> id = renderer_->device().nodeOf(sample.nodeOrdinal);
+    if (!id || !(sample.reversedDepth > 0.0f)) return std::nullopt;
+    const hlod::View view(camera_, box());
+    Pick pick;
+    const SeenPoint seen = pointOf(sample, view, x, y);
+    pick.pointModel = seen.pointModel;
+    pick.distanceModelUnits = seen.distanceModelUnits;
+    pick.triangle = sample.triangle;
+    const hlod::FrameCut& cut = renderer_->runner().cut();
+    const auto take = [&](std::span<const hlod::Node> nodes, std::span<const uint8_t> standIns) {
+        for (size_t i = 0; i < nodes.size(); ++i) {
+            if (nodes[i].record->id != *id) continue;
+            pick.node = *nodes[i].record;
+            pick.boxModel = *nodes[i].boxModel;
+            pick.isStandIn = i < standIns.size() && standIns[i] != 0;
+            pick.ssePx = view.ssePx(pick.node.errorModelUnits, pick.boxModel);
+            return true;
+        }
+        return false;
+    };
+    if (take(cut.drawn(), cut.drawnAsStandIn()) || take(cut.zipped(), {})) return pick;
+    return std::nullopt;
+}
+
+double Scene::distanceSeen() {
+    double nearest = std::numeric_limits<double>::infinity();
+    FrameTarget* const target = renderer_->device().target();
+    if (target == nullptr) return nearest;
+    const hlod::View view(camera_, box());
+    for (int row = 1; row <= 3; ++row) {
+        for (int column = 1; column <= 3; ++column) {
+            const PixelSample sample =
+                target->sample(target->widthPx() * column / 4, target->heightPx() * row / 4);
+            if (!(sample.reversedDepth > 0.0f)) continue;
+            nearest = std::min(nearest,
+                               view.nearModelUnits() / static_cast<double>(sample.reversedDepth));
+        }
+    }
+    return nearest;
+}
+
+Picture Scene::read() {
+    return renderer_->read(record_);
+}
+
+}  // namespace pagoda::viewer

@@ -1,0 +1,95 @@
+// scene.h: an open database and what draws it, live: one frame a call, into the device's own
+// target. Main thread only, context current.
+#pragma once
+
+#include "cache/page_source.h"
+#include "hlod/view/frame_rate_control.h"
+#include "ooc/store/database.h"
+#include "viewer/renderer.h"
+#include "viewer/window/frozen_cut.h"
+#include "viewer/window/view_settings.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pagoda::viewer {
+
+// What lies under one pixel.
+struct Pick {
+    Vec3d pointModel{0.0};
+    double distanceModelUnits = 0.0;  // along the direction of view
+    ooc::NodeRecord node;
+    Box3d boxModel;
+    uint32_t triangle = 0;
+    double ssePx = 0.0;
+    bool isStandIn = false;
+};
+
+class Scene {
+public:
+    // Throws Error when there is no sound database at `path`, or its root cannot be read.
+    Scene(const std::filesystem::path& path, const RendererOptions& options);
+    ~Scene();
+    Scene(const Scene&) = delete;
+    Scene& operator=(const Scene&) = delete;
+
+    // Begins anew with other budgets: nothing is resident afterwards.
+    void restart(const RendererOptions& options);
+
+    // Draws a frame. `isMoving`: the view will not stay as it is.
+    const hlod::FrameRecord& draw(const hlod::Camera& camera, const ViewSettings& settings,
+                                  bool isMoving);
+    [[nodiscard]] const hlod::FrameRecord& record() const noexcept { return record_; }
+    // Did the last frame draw what will be drawn until something changes?
+    [[nodiscard]] bool isSettled() const noexcept { return record_.isSettled && !isCoarsened_; }
+    [[nodiscard]] bool isWaitingForPages() const noexcept { return record_.missingPages > 0; }
+
+    // The visible set of the last frame stays, wherever the eye goes.
+    void freeze();
+    void thaw();
+    [[nodiscard]] const FrozenCut* frozen() const noexcept { return frozen_.get(); }
+
+    // Of the last frame; a pixel from the top left.
+    [[nodiscard]] std::optional<Vec3d> surfaceAt(glm::dvec2 px);
+    [[nodiscard]] std::optional<Pick> pick(glm::dvec2 px);
+    // To the nearest of some places in the picture; infinite where nothing is.
+    [[nodiscard]] double distanceSeen();
+    [[nodiscard]] Picture read();
+
+    [[nodiscard]] Renderer& renderer() noexcept { return *renderer_; }
+    [[nodiscard]] const ooc::Database& database() const noexcept { return database_; }
+    [[nodiscard]] Box3d box() const { return renderer_->sceneBox(); }
+    [[nodiscard]] hlod::UpAxis up() const noexcept { return up_; }
+    [[nodiscard]] std::string name() const;
+    [[nodiscard]] uint64_t triangles() const noexcept { return triangles_; }  // of all leaves
+    // Of the database as a whole and of the last frame.
+    [[nodiscard]] std::vector<std::string> faults() const;
+
+private:
+    [[nodiscard]] hlod::Strategy& strategyFor(const ViewSettings& settings);
+    [[nodiscard]] double tauFor(const ViewSettings& settings, bool isMoving);
+    void setTint(const ViewSettings& settings);
+
+    ooc::Database database_;
+    cache::DatabaseSource source_;
+    std::unique_ptr<Renderer> renderer_;
+    hlod::UpAxis up_ = hlod::UpAxis::Z;
+    uint64_t triangles_ = 0;
+
+    std::unique_ptr<hlod::Strategy> strategy_;
+    std::string strategyName_;
+    std::unique_ptr<FrozenCut> frozen_;
+    std::optional<hlod::FrameRateControl> rateControl_;
+    double rateTargetFps_ = 0.0;
+    bool isCoarsened_ = false;  // the last frame was drawn at a tau that only moving views get
+    hlod::Camera camera_;       // of the last frame
+    hlod::FrameRecord record_;
+};
+
+// z unless the database's metadata says y.
+[[nodiscard]] hlod::UpAxis upAxisOf(const ooc::Database& database);
+
+}  // namespace pagoda::viewer

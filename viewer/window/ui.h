@@ -1,0 +1,31 @@
+// ui.h: Dear ImGui in our window: font, colours, one call before panels and one after. Main thread
+// only, the window's context current.
+#pragma once
+
+#include "viewer/window/glfw_window.h"
+
+namespace pagoda::viewer {
+
+class Ui {
+public:
+    explicit Ui(GlfwWindow& window);
+    ~Ui();
+    Ui(const Ui&) = delete;
+    Ui& operator=(const Ui&) = delete;
+
+    void beginFrame();
+    void endFrame();  // draws into the bound framebuffer
+
+    // Is the mouse over a panel, or the keyboard in one of its fields?
+    [[nodiscard]] bool wantsMouse() const;
+    [[nodiscard]] bool wantsKeys() const;
+    // Milliseconds of CPU from beginFrame() to draw lists, GL excluded; and of GL.
+    [[nodiscard]] double buildMs() const noexcept { return buildMs_; }
+    [[nodiscard]] double drawMs() const noexcept { return drawMs_; }
+
+private:
+    double buildMs_ = 0.0, drawMs_ = 0.0;
+    double beganS_ = 0.0;
+};
+
+}  // namespace pagoda::viewer

@@ -1,0 +1,245 @@
+#include "viewer/window/view_app.h"
+
+#include "ooc/base/file.h"
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+namespace pagoda::viewer {
+namespace {
+
+// An idle window looks up so often, so that Ctrl-C in the terminal is heard; it draws nothing.
+constexpr double kIdleSeconds = 0.5;
+// While pages are on their way, a frame is tried so often at least.
+constexpr double kLoadSeconds = 0.01;
+// A still view that nothing comes for, and that yet does not come to rest, is tried less often.
+constexpr int kRestlessFrames = 60;
+constexpr double kRestlessSeconds = 0.25;
+constexpr double kMaxStepSeconds = 0.1;  // a slow frame must not throw the eye through a wall
+
+constexpr glm::u8vec4 kDrawnColour{255, 105, 180, 255};  // pink
+constexpr glm::u8vec4 kHiddenColour{250, 214, 70, 255};  // yellow
+constexpr glm::u8vec4 kFrustumColour{240, 244, 248, 255};
+
+double nowSeconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+Vec3d upVector(hlod::UpAxis up) {
+    return up == hlod::UpAxis::Y ? Vec3d(0, 1, 0) : Vec3d(0, 0, 1);
+}
+
+nlohmann::json jsonOf(const Vec3d& v) {
+    return {v.x, v.y, v.z};
+}
+
+}  // namespace
+
+ViewApp::ViewApp(GlfwWindow& window, const ViewOptions& options)
+    : window_(window),
+      options_(options),
+      settings_(options.settings),
+      log_(options.stateLog),
+      ui_(window) {
+    lastStepS_ = nowSeconds();
+    if (options.database.empty()) return;
+    open(options.database);
+    if (options.replay.empty()) return;
+    const std::vector<std::byte> text = readWholeFile(options.replay, hlod::kMaxPathBytes);
+    startReplay(hlod::parseCameraPath({reinterpret_cast<const char*>(text.data()), text.size()},
+                                      navigation_->camera(), options.replay.string()));
+}
+
+ViewApp::~ViewApp() {
+    log_.write("closed", {{"frames", frames_}});
+}
+
+void ViewApp::open(const std::filesystem::path& path) {
+    auto scene = std::make_unique<Scene>(path, settings_.runtime);
+    scene_ = std::move(scene);  // only now: what cannot be opened leaves the old one
+    pick_.reset();
+    replay_.reset();
+    readRate_.clear();
+    const glm::ivec2 size = glm::max(window_.framebufferPx(), glm::ivec2(1));
+    hlod::Camera camera;
+    camera.widthPx = size.x;
+    camera.heightPx = size.y;
+    camera = hlod::frameBox(camera, scene_->box(), hlod::viewDirection("iso", scene_->up()),
+                            scene_->up());
+    navigation_.emplace(camera, scene_->box(), upVector(scene_->up()));
+    if (!options_.cameraJson.empty()) {
+        navigation_->jumpTo(hlod::parseCamera(options_.cameraJson, camera));
+        options_.cameraJson.clear();  // of the first model alone
+    }
+    isSceneDirty_ = true;
+    window_.setTitle(scene_->name() + " - Pagoda");
+    log_.write("opened", {{"file", path.string()}});
+}
+
+double ViewApp::waitSeconds() const {
+    if (!hasPresented_ || isSceneDirty_ || isCameraMoving_ || uiFrames_ > 0) return 0.0;
+    if (!scene_ || scene_->isSettled()) return replay_ ? 0.0 : kIdleSeconds;
+    if (restlessFrames_ > kRestlessFrames) return kRestlessSeconds;
+    return scene_->isWaitingForPages() ? kLoadSeconds : 0.0;
+}
+
+void ViewApp::step() {
+    const double wait = waitSeconds();
+    window_.handleEvents(wait);
+    const double now = nowSeconds();
+    // What was waited for is not time in which anything moved.
+    const double passed = wait > 0.0 ? 0.0 : now - lastStepS_;
+    lastStepS_ = now;
+    const size_t messages = messages_.size();
+    std::erase_if(messages_, [&](const Message& m) { return !m.isError && m.untilSeconds < now; });
+    if (messages_.size() != messages) uiFrames_ = kUiFrames;
+
+    advance(std::min(passed, kMaxStepSeconds));
+    bool hasDrawn = false;
+    guarded([&] { hasDrawn = drawScene(); });
+    if (!hasDrawn && uiFrames_ == 0) return;
+    present();
+    if (hasDrawn) logFrame();
+}
+
+void ViewApp::advance(double seconds) {
+    if (!navigation_) return;
+    if (replay_ && !isSceneDirty_) advanceReplay();
+    navigation_->setKeys(moveKeysOf(heldKeys_));
+    if (navigation_->mode() != NavigationMode::Orbit && hasPresented_) {
+        navigation_->setDistanceSeen(scene_->distanceSeen());
+    }
+    const bool wasMoving = isCameraMoving_;
+    isCameraMoving_ = navigation_->update(seconds) && !replay_;
+    // The first still frame after a move is drawn at the tau that was asked for.
+    if (isCameraMoving_ || wasMoving) isSceneDirty_ = true;
+}
+
+bool ViewApp::drawScene() {
+    if (!scene_ || !navigation_) return false;
+    const glm::ivec2 size = window_.framebufferPx();
+    if (size.x < 1 || size.y < 1) return false;  // minimised
+    if (!isSceneDirty_ && scene_->isSettled()) return false;
+    const bool isRestless = !isSceneDirty_ && !scene_->isWaitingForPages();
+    restlessFrames_ = isRestless ? restlessFrames_ + 1 : 0;
+    isSceneDirty_ = false;
+    const hlod::FrameRecord& record = scene_->draw(navigation_->camera(), settings_, isMoving());
+    if (record.bytesRead > 0) restlessFrames_ = 0;
+    timeline_.add(record);
+    readRate_.add(nowSeconds(),
+                  scene_->renderer().runner().streaming().requests().counters().bytesRead);
+    drawFrozenLines();
+    if (isRecording_ && (recorded_.empty() || !(recorded_.back() == navigation_->camera()))) {
+        recorded_.push_back(navigation_->camera());
+    }
+    ++frames_;
+    uiFrames_ = std::max(uiFrames_, 1);
+    return true;
+}
+
+void ViewApp::drawFrozenLines() {
+    const FrozenCut* const frozen = scene_->frozen();
+    if (frozen == nullptr) return;
+    if (settings_.showsHiddenBoxes) {
+        for (const Box3d& box : frozen->hiddenBoxes()) lines_.addBox(box, kHiddenColour);
+    }
+    if (settings_.showsDrawnBoxes) {
+        for (const Box3d& box : frozen->drawnBoxes()) lines_.addBox(box, kDrawnColour);
+    }
+    const Box3d box = scene_->box();
+    const double reach =
+        1.2 * hlod::distance(frozen->camera().eye, box) + 0.6 * glm::distance(box.min, box.max);
+    lines_.addFrustum(frozen->camera(), reach, kFrustumColour);
+    lines_.draw(hlod::View(navigation_->camera(), box), *scene_->renderer().device().target());
+}
+
+void ViewApp::present() {
+    const glm::ivec2 size = window_.framebufferPx();
+    FrameTarget* const target = scene_ ? scene_->renderer().device().target() : nullptr;
+    if (target != nullptr) {
+        target->blitToWindow(size.x, size.y);
+    } else {
+        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        glClearColor(0.23f, 0.25f, 0.27f, 1.0f);
+        glClear(GL_COLOR_BUFFER_BIT);
+    }
+    ui_.beginFrame();
+    showPanels();
+    ui_.endFrame();
+    window_.swap();
+    hasPresented_ = true;
+    if (uiFrames_ > 0) --uiFrames_;
+}
+
+void ViewApp::showPanels() {
+    if (scene_) {
+        cache::Streaming& streaming = scene_->renderer().runner().streaming();
+        if (settings_.showsHud) {
+            const Streaming numbers{
+                .inFlight = streaming.requests().sentCount(),
+                .waiting = streaming.requests().waitingCount(),
+                .bytesPerSecond = scene_->isSettled() ? 0.0 : readRate_.perSecond(),
+                .gpuBudgetBytes = settings_.runtime.gpuBytes,
+                .hostBudgetBytes = settings_.runtime.hostBytes,
+                .uiMs = ui_.buildMs()};
+            showHud(*scene_, settings_, numbers, timeline_);
+        }
+        if (pick_) showPick(*pick_, scene_->record());
+        if (settings_.showsSteering) {
+            const Change change = showSteering(settings_, scene_->record());
+            if (change.isRuntime) {
+                guarded([&] { scene_->restart(settings_.runtime); });
+                pick_.reset();
+                readRate_.clear();
+            }
+            isSceneDirty_ |= change.isLook || change.isRuntime;
+        }
+    } else {
+        showWelcome();
+    }
+    std::vector<std::string> states;
+    if (scene_ && scene_->frozen() != nullptr) states.emplace_back("frozen");
+    if (isRecording_) states.push_back(fmt::format("recording, {} frames", recorded_.size()));
+    if (replay_) {
+        states.push_back(fmt::format("replaying {}/{}", replayFrame_, replay_->frames.size()));
+    }
+    showFooter(navigation_ ? &*navigation_ : nullptr, settings_, states);
+    showMessages(messages_);
+    if (settings_.showsHelp) showKeys();
+}
+
+void ViewApp::logFrame() {
+    if (!log_.isOn()) return;
+    constexpr std::array kModes = {"orbit", "fly", "walk"};
+    const hlod::FrameRecord& record = scene_->record();
+    const hlod::Camera& camera = navigation_->camera();
+    log_.write("frame", {{"frame", frames_},
+                         {"width", record.widthPx},
+                         {"height", record.heightPx},
+                         {"eye", jsonOf(camera.eye)},
+                         {"target", jsonOf(camera.target)},
+                         {"mode", kModes[static_cast<size_t>(navigation_->mode())]},
+                         {"strategy", record.strategy},
+                         {"tau", settings_.tauPx},
+                         {"effective_tau", record.effectiveTauPx},
+                         {"drawn_nodes", record.drawnNodes},
+                         {"hidden_nodes", record.hiddenNodes},
+                         {"drawn_triangles", record.drawnTriangles},
+                         {"missing_pages", record.missingPages},
+                         {"settled", scene_->isSettled() && !isMoving() && !isSceneDirty_},
+                         {"frozen", scene_->frozen() != nullptr},
+                         {"replaying", replay_.has_value()},
+                         {"colours", kColouringNames[static_cast<size_t>(settings_.colouring)]},
+                         {"wireframe", settings_.isWireframe},
+                         {"frame_ms", record.frameMs},
+                         {"ui_ms", ui_.buildMs()},
+                         {"ui_gl_ms", ui_.drawMs()}});
+}
+
+}  // namespace pagoda::viewer

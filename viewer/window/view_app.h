@@ -1,0 +1,105 @@
+// view_app.h: the window's state and what every command does to it. view_window.cpp holds the loop.
+// Main thread only, the window's context current.
+#pragma once
+
+#include "hlod/view/camera_path.h"
+#include "viewer/navigation.h"
+#include "viewer/window/glfw_window.h"
+#include "viewer/window/input_map.h"
+#include "viewer/window/line_drawer.h"
+#include "viewer/window/panels.h"
+#include "viewer/window/rate_meter.h"
+#include "viewer/window/scene.h"
+#include "viewer/window/state_log.h"
+#include "viewer/window/timeline.h"
+#include "viewer/window/ui.h"
+#include "viewer/window/view_window.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+
+namespace pagoda::viewer {
+
+class ViewApp final : public WindowEvents {
+public:
+    ViewApp(GlfwWindow& window, const ViewOptions& options);
+    ~ViewApp() override;
+
+    // Takes what has happened, waiting as long as nothing has to be drawn; draws what there is.
+    void step();
+
+    void onAnything() override { uiFrames_ = kUiFrames; }
+    void onKey(int key, int modifiers, bool isDown, bool isRepeat) override;
+    void onButton(int button, int modifiers, bool isDown, glm::dvec2 px) override;
+    void onCursor(glm::dvec2 px) override;
+    void onWheel(double steps, glm::dvec2 px) override;
+    void onResize() override;
+    void onDrop(const std::vector<std::filesystem::path>& files) override;
+
+private:
+    // A panel may need a second look at its own size, and a third at what the mouse is over.
+    static constexpr int kUiFrames = 3;
+
+    // view_app.cpp
+    void open(const std::filesystem::path& path);
+    [[nodiscard]] double waitSeconds() const;
+    void advance(double seconds);
+    [[nodiscard]] bool drawScene();
+    void drawFrozenLines();
+    void present();
+    void showPanels();
+    void logFrame();
+    [[nodiscard]] bool isMoving() const { return isCameraMoving_; }
+
+    // view_commands.cpp
+    void run(Command command);
+    [[nodiscard]] bool runLook(Command command);
+    [[nodiscard]] bool runCamera(Command command);
+    void nextStrategy();
+    void toggleFreeze();
+    void pickAt(glm::dvec2 px);
+    void saveScreenshot();
+    void copyCamera();
+    void pasteCamera();
+    void toggleRecording();
+    void startReplay(std::optional<hlod::CameraPath> path);
+    void advanceReplay();
+    void dismiss();
+    void say(const std::string& text, bool isError = false);
+    [[nodiscard]] std::filesystem::path freeName(const std::string& ending) const;
+    // What throws Error within `work` is shown.
+    void guarded(const std::function<void()>& work);
+
+    GlfwWindow& window_;
+    ViewOptions options_;
+    ViewSettings settings_;
+    StateLog log_;
+    Ui ui_;
+    LineDrawer lines_;
+    std::unique_ptr<Scene> scene_;
+    std::optional<Navigation> navigation_;
+    Timeline timeline_;
+    RateMeter readRate_;
+    std::vector<Message> messages_;
+    std::optional<Pick> pick_;
+
+    std::set<int> heldKeys_;
+    std::optional<glm::dvec2> pressedPx_;  // where a click may still be one
+    int heldButton_ = -1;
+
+    std::vector<hlod::Camera> recorded_;
+    bool isRecording_ = false;
+    std::optional<hlod::CameraPath> replay_, lastPath_;
+    size_t replayFrame_ = 0;
+    int replayWaits_ = 0;
+
+    bool isSceneDirty_ = true, isCameraMoving_ = false, hasPresented_ = false;
+    int uiFrames_ = kUiFrames;
+    int restlessFrames_ = 0;  // still view, nothing comes, and it is not settled
+    double lastStepS_ = 0.0;
+    uint64_t frames_ = 0;
+};
+
+}  // namespace pagoda::viewer
