@@ -9,6 +9,12 @@
 #include <utility>
 
 namespace pagoda::cache {
+namespace {
+
+// Reads that share the window: with fewer the line would stand still between them.
+constexpr uint64_t kReadsAWindow = 4;
+
+}  // namespace
 
 RequestQueue::RequestQueue(LoadQueue& loads, Clock& clock, Limits limits)
     : loads_(loads), clock_(clock), limits_(limits) {
@@ -77,15 +83,20 @@ void RequestQueue::rank() {
     std::sort(byOffset_.begin(), byOffset_.end());
 }
 
-bool RequestQueue::isReadFree(bool isPrefetch) const {
+bool RequestQueue::isReadFree(bool isPrefetch) {
     const size_t limit = isPrefetch ? std::min(limits_.prefetchBelowReads, limits_.readsInFlight)
                                     : limits_.readsInFlight;
-    return loads_.readsInFlight() < limit;
+    return loads_.readsInFlight() < limit && (!limits_.isWindowed || line_.isFree(clock_.nowS()));
+}
+
+uint64_t RequestQueue::longestReadBytes() const {
+    if (!limits_.isWindowed) return limits_.readBytes;
+    return std::min(limits_.readBytes, line_.windowBytes() / kReadsAWindow);
 }
 
 void RequestQueue::send(const Admit& admit) {
     forgetStale();
-    if (loads_.readsInFlight() >= limits_.readsInFlight) return;
+    if (!isReadFree(false)) return;
     rank();
     while (!ranked_.empty()) {
         std::pop_heap(ranked_.begin(), ranked_.end(), std::mem_fn(&Rank::isLater));
@@ -101,6 +112,7 @@ void RequestQueue::send(const Admit& admit) {
         std::erase_if(ranked_, [&](const Rank& other) { return other.isBlock == best.isBlock; });
         std::make_heap(ranked_.begin(), ranked_.end(), std::mem_fn(&Rank::isLater));
     }
+    line_.starve();
 }
 
 // `best` is admitted; neighbours on disk that are wanted too, and admitted, join its read.
@@ -114,11 +126,12 @@ void RequestQueue::sendRead(Entry& best, const Admit& admit) {
                other.key.isBlock == best.request.key.isBlock &&
                other.isPrefetch == best.request.isPrefetch;
     };
+    const uint64_t mostBytes = longestReadBytes();
     size_t low = place, high = place + 1;
     while (high < byOffset_.size() && joins(*byOffset_[high].entry)) {
         const Request& next = byOffset_[high].entry->request;
         if (next.range.offset < end || next.range.offset - end > limits_.joinGapBytes ||
-            next.range.end() - begin > limits_.readBytes || !admit(next)) {
+            next.range.end() - begin > mostBytes || !admit(next)) {
             break;
         }
         end = next.range.end();
@@ -127,7 +140,7 @@ void RequestQueue::sendRead(Entry& best, const Admit& admit) {
     while (low > 0 && joins(*byOffset_[low - 1].entry)) {
         const Request& previous = byOffset_[low - 1].entry->request;
         if (previous.range.end() > begin || begin - previous.range.end() > limits_.joinGapBytes ||
-            end - previous.range.offset > limits_.readBytes || !admit(previous)) {
+            end - previous.range.offset > mostBytes || !admit(previous)) {
             break;
         }
         begin = previous.range.offset;
@@ -142,11 +155,18 @@ void RequestQueue::sendRead(Entry& best, const Admit& admit) {
 // One read of byOffset_[low..high).
 void RequestQueue::sendItems(size_t low, size_t high) {
     std::vector<LoadItem> items;
+    const double nowS = clock_.nowS();
+    const uint64_t readBytes =
+        byOffset_[high - 1].entry->request.range.end() - byOffset_[low].entry->request.range.offset;
     for (size_t i = low; i < high; ++i) {
         Entry& entry = *byOffset_[i].entry;
         const Request& request = entry.request;
         entry.ticket = nextTicket_++;
-        tickets_.emplace(entry.ticket, request.key);
+        // With the gap behind it.
+        const uint64_t end =
+            i + 1 < high ? byOffset_[i + 1].entry->request.range.offset : request.range.end();
+        tickets_.emplace(entry.ticket, Sent{request.key, line_.send(end - request.range.offset,
+                                                                    readBytes, nowS)});
         counters_.bytesAsked += request.range.bytes;
         ++counters_.sent;
         items.push_back({entry.ticket, request.key.database, request.range, request.key.isBlock,
@@ -159,20 +179,21 @@ void RequestQueue::sendItems(size_t low, size_t high) {
 void RequestQueue::collect(std::vector<Arrival>& arrivals) {
     results_.clear();
     loads_.collect(results_);
+    const double nowS = clock_.nowS();
     for (LoadResult& result : results_) {
         const auto ticket = tickets_.find(result.ticket);
         assert(ticket != tickets_.end());
-        const auto found = requests_.find(ticket->second);
+        const auto found = requests_.find(ticket->second.key);
+        const bool isHere = result.page || result.block;
+        line_.arrive(ticket->second.mark, isHere, nowS);
         tickets_.erase(ticket);
         Entry& entry = found->second;
         entry.ticket = 0;
         Request request = entry.request;
         request.isPrefetch = entry.wantedFrame == 0;
         const uint64_t framesSinceAsked = frame_ - entry.frame;
-        const bool isHere = result.page || result.block;
         if (!isHere && ++entry.failures < limits_.attempts) {
-            entry.notBeforeS =
-                clock_.nowS() + limits_.firstPauseS * std::exp2(entry.failures - 1.0);
+            entry.notBeforeS = nowS + limits_.firstPauseS * std::exp2(entry.failures - 1.0);
             ++counters_.retried;
             // The room that was reserved is given back: the request is admitted anew.
             arrivals.push_back({request, {result.ticket, {}, {}, {}}, framesSinceAsked});

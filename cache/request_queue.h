@@ -5,6 +5,7 @@
 #pragma once
 
 #include "cache/clock.h"
+#include "cache/line_estimate.h"
 #include "cache/load_queue.h"
 
 #include <compare>
@@ -47,6 +48,9 @@ public:
         uint64_t readBytes = 1 << 20;     // of one joined read
         uint32_t attempts = 4;
         double firstPauseS = 0.02;  // doubles with each failure
+        // Bytes in flight: no more than keep the line busy (line_estimate.h), and at least one
+        // read; joined ones get shorter, so that several share the window.
+        bool isWindowed = true;
     };
     struct Counters {
         uint64_t asked = 0, sent = 0, reads = 0, cancelled = 0, retried = 0, failed = 0;
@@ -65,7 +69,10 @@ public:
     // Both outlive it.
     RequestQueue(LoadQueue& loads, Clock& clock, Limits limits);
 
-    void beginFrame() { ++frame_; }
+    void beginFrame() {
+        ++frame_;
+        line_.beginFrame(clock_.nowS());
+    }
     // Asks, or ranks anew: within a frame the greatest priority (a number, asserted) holds, and a
     // want beats a prefetch. True the first time in a frame that it is wanted (not prefetched).
     // What was wanted once arrives as wanted (Arrival::request), even if only prefetched since.
@@ -88,6 +95,7 @@ public:
         return requests_.size() - tickets_.size();
     }
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
+    [[nodiscard]] const LineEstimate& line() const noexcept { return line_; }
 
 private:
     struct Entry {
@@ -113,11 +121,16 @@ private:
         Entry* entry;
         [[nodiscard]] bool operator<(const Place& other) const;
     };
+    struct Sent {
+        RequestKey key;
+        LineEstimate::Mark mark;
+    };
     using Admit = std::function<bool(const Request&)>;
     void forgetStale();
     void rank();
     [[nodiscard]] static Place placeOf(Entry& entry);
-    [[nodiscard]] bool isReadFree(bool isPrefetch) const;
+    [[nodiscard]] bool isReadFree(bool isPrefetch);
+    [[nodiscard]] uint64_t longestReadBytes() const;
     void sendRead(Entry& best, const Admit& admit);
     void sendItems(size_t low, size_t high);
 
@@ -125,7 +138,8 @@ private:
     Clock& clock_;
     Limits limits_;
     std::unordered_map<RequestKey, Entry, RequestKeyHash> requests_;
-    std::unordered_map<uint64_t, RequestKey> tickets_;
+    std::unordered_map<uint64_t, Sent> tickets_;
+    LineEstimate line_;
     std::vector<Rank> ranked_;     // waiting: a heap, the best on top
     std::vector<Place> byOffset_;  // the same, by place on disk
     std::vector<LoadResult> results_;
