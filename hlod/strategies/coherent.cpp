@@ -31,18 +31,30 @@ uint64_t PyramidAnswers::wait(QueryTicket ticket) {
     return pyramid_->visiblePixels(boxes_[ticket.value]);
 }
 
+// The next frame may be of another device: what this one was asked stays unanswered.
+void CoherentStrategy::forget() {
+    memory_.clear();
+    lateQueries_.clear();
+}
+
 void CoherentStrategy::traverse(FrameContext& frame) {
     frame_ = &frame;
     counting_ = frame.sink.counting();
+    late_ = nullptr;
     if (rules_.usesPyramid && frame.sink.pyramid() != nullptr) {
         pyramidAnswers_.beginFrame(*frame.sink.pyramid(), frame.record);
+        if (rules_.takesLateAnswers) late_ = counting_;
         counting_ = &pyramidAnswers_;
     }
     ++frameNumber_;
+    // In a still view nothing gets coarser, whatever is learnt about it.
+    mayRise_ = rules_.options.isAsPublished || !frame.isSameView || frame.tauPx > lastTauPx_;
+    lastTauPx_ = frame.tauPx;
     visits_.clear();
     const auto root = frame.tree.root();
     if (!root) return;
     memory_.fit(frame.tree);
+    takeLateAnswers();
     push(*root, kNoParent, 0);
     const bool doesPoll = counting_ != nullptr && counting_->isPollFree();
     while (!queue_.empty() || !pending_.empty()) {
@@ -97,10 +109,9 @@ bool CoherentStrategy::isFine(const Visit& visit, double bias) const {
     return frame_->tauPx > 0.0 && weight * visit.ssePx <= frame_->tauPx;
 }
 
-double CoherentStrategy::biasOf(const Visit& visit) const {
-    const double outlinePx = boxPixels(frame_->view, *visit.node.boxModel);
+double CoherentStrategy::biasOf(uint64_t visiblePx, double outlinePx) const {
     const double share =
-        outlinePx > 1.0 ? std::min(static_cast<double>(visit.visiblePx) / outlinePx, 1.0) : 1.0;
+        outlinePx > 1.0 ? std::min(static_cast<double>(visiblePx) / outlinePx, 1.0) : 1.0;
     const StrategyOptions& options = rules_.options;
     return std::max(sigmoidBias(share, options.biasS, options.biasT), options.biasFloor);
 }
@@ -137,6 +148,7 @@ void CoherentStrategy::visit(uint32_t index) {
 }
 
 void CoherentStrategy::ask(uint32_t index) {
+    if (late_ != nullptr && visits_[index].prediction == Prediction::Stop) return askLate(index);
     visits_[index].ticket = counting_->query(*visits_[index].node.boxModel);
     if (rules_.doesWaitAtOnce) {
         ++frame_->record.waits;
@@ -147,10 +159,40 @@ void CoherentStrategy::ask(uint32_t index) {
     if (visits_[index].prediction == Prediction::Stop) emit(index);
 }
 
+// Until its answer comes, what was last known holds: it is seen.
+void CoherentStrategy::askLate(uint32_t index) {
+    Visit& visit = visits_[index];
+    const double outlinePx = boxPixels(frame_->view, *visit.node.boxModel);
+    lateQueries_.push_back(
+        {visit.node.page(), visit.node.slot, outlinePx, late_->query(*visit.node.boxModel)});
+    visit.visiblePx = static_cast<uint64_t>(outlinePx);
+    markVisible(index);
+    emit(index);
+}
+
+// In order, as far as they have come. What has not been visited since is unknown all the same.
+void CoherentStrategy::takeLateAnswers() {
+    if (late_ == nullptr) return;
+    while (!lateQueries_.empty()) {
+        const LateQuery& query = lateQueries_.front();
+        const std::optional<uint64_t> visiblePx = late_->poll(query.ticket);
+        if (!visiblePx) break;
+        Memory* memory = memory_.find(query.slot, query.page);
+        if (memory != nullptr && memory->visitedFrame + 1 == frameNumber_ && memory->isStop) {
+            memory->isDoubted = *visiblePx == 0;
+            memory->isVisible = !memory->isDoubted;
+            if (memory->isVisible) memory->bias = biasOf(*visiblePx, query.outlinePx);
+        }
+        lateQueries_.pop_front();
+    }
+}
+
 CoherentStrategy::Prediction CoherentStrategy::predict(Visit& visit, const Memory& memory) {
     if (rules_.predict == CoherentRules::Predict::Never) return Prediction::Delay;
     // New, back in the frustum, or hidden.
     if (memory.visitedFrame + 1 != frameNumber_ || !memory.isVisible) return Prediction::Delay;
+    // Asked again from the same place it would come and go.
+    if (memory.isDoubted && frame_->isSameView) return Prediction::Delay;
     if (rules_.predict == CoherentRules::Predict::InOrder) {
         return isFine(visit, lastBias_) ? Prediction::Stop : Prediction::Refine;
     }
@@ -162,8 +204,7 @@ CoherentStrategy::Prediction CoherentStrategy::predict(Visit& visit, const Memor
         const bool isSure = isFine(visit, memory.bias * (1.0 + rules_.options.caution));
         return isSure || !rules_.doesWeighError ? Prediction::Stop : Prediction::Delay;
     }
-    visit.isRise = mayRise(visit);
-    return visit.isRise ? Prediction::Delay : Prediction::Refine;
+    return mayRise(visit) ? Prediction::Delay : Prediction::Refine;
 }
 
 // Its own box was seen and nothing below it: it goes on waiting for its answer. Refined at once,
@@ -182,12 +223,9 @@ bool CoherentStrategy::hasHiddenChildrenOnly(const Visit& visit) {
 }
 
 // Would the node do in place of its children, by what they answered? A hidden child weighs nothing;
-// one that was out of the frustum does not count. What its own answer has refused is not tried
-// again from the same place: while a node waits, its children hide nothing, what is behind them
-// shows, and a still view would come and go with every second frame.
+// one that was out of the frustum does not count.
 bool CoherentStrategy::mayRise(const Visit& visit) {
-    const bool isRefused = memory_[visit.node].refusedSsePx == visit.ssePx;
-    if (isRefused && !rules_.options.isAsPublished) return false;
+    if (!mayRise_) return false;
     const NodeRange children = frame_->tree.children(visit.node);
     double biasSum = 0.0;
     uint32_t count = 0;
@@ -196,6 +234,8 @@ bool CoherentStrategy::mayRise(const Visit& visit) {
         const Memory& memory = memory_[child];
         if (memory.visitedFrame + 1 != frameNumber_) continue;
         ++count;
+        // The listing asks all children, the hidden ones as well, whether they stopped.
+        if (rules_.options.isAsPublished && !memory.isStop) return false;
         if (!memory.isVisible) continue;
         const double ssePx = frame_->view.ssePx(child.record->errorModelUnits, *child.boxModel);
         const bool isChildFine = memory.bias * ssePx <= frame_->tauPx;
@@ -229,15 +269,15 @@ void CoherentStrategy::answer(uint32_t index, uint64_t visiblePx) {
         return;
     }
     markVisible(index);
-    memory.bias = lastBias_ = biasOf(visit);
-    memory.isStop = isFine(visit, memory.bias);
+    memory.bias = lastBias_ = biasOf(visiblePx, boxPixels(frame_->view, *visit.node.boxModel));
+    const bool staysRefined = !mayRise_ && memory.refinedFrame + 1 == frameNumber_;
+    memory.isStop = isFine(visit, memory.bias) && !staysRefined;
     if (!wasStop) {
         ++counts.delayVisible;
         if (memory.isStop && visit.probeLevel == 0) ++frame_->record.delayedNodes;
     } else if (!memory.isStop && visit.isDrawn) {
         ++frame_->record.rarnNodes;
     }
-    if (!memory.isStop && (visit.isDrawn || visit.isRise)) memory.refusedSsePx = visit.ssePx;
     emit(index);
 }
 
@@ -349,6 +389,10 @@ std::unique_ptr<Strategy> makeSimpStrategy(const StrategyOptions& options) {
 
 std::unique_ptr<Strategy> makeCohStrategy(const StrategyOptions& options) {
     return make({}, options);
+}
+
+std::unique_ptr<Strategy> makeLateStrategy(const StrategyOptions& options) {
+    return make({.usesPyramid = true, .takesLateAnswers = true}, options);
 }
 
 std::unique_ptr<Strategy> makeHzbStrategy(const StrategyOptions& options) {

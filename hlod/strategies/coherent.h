@@ -27,6 +27,8 @@ struct CoherentRules {
     bool doesWeighError = true;  // VMSSE; else SSE alone
     bool doesWaitAtOnce = false;
     bool usesPyramid = false;  // answers from depths drawn before the first wait, not from queries
+    // Stops are asked about by queries whose answers come in later frames, the rest by the pyramid.
+    bool takesLateAnswers = false;
     StrategyOptions options{};
 };
 
@@ -50,7 +52,7 @@ class CoherentStrategy final : public Strategy {
 public:
     explicit CoherentStrategy(const CoherentRules& rules) : rules_(rules) {}
     void traverse(FrameContext& frame) override;
-    void forget() override { memory_.clear(); }
+    void forget() override;
     [[nodiscard]] bool learnsWhatIsHidden() const override { return true; }
 
 private:
@@ -59,9 +61,9 @@ private:
         uint64_t visitedFrame = 0;  // of this strategy
         uint64_t refinedFrame = 0;
         double bias = 1.0;
-        double refusedSsePx = -1.0;  // where it was last tried in place of its children, in vain
         bool isVisible = false;
         bool isStop = false;
+        bool isDoubted = false;  // a late answer saw nothing of it, whatever the pyramid says
     };
     // A node in this frame.
     struct Visit {
@@ -73,7 +75,6 @@ private:
         uint64_t visiblePx = 0;
         QueryTicket ticket;
         Prediction prediction = Prediction::Delay;
-        bool isRise = false;  // delayed because it may do in place of its children
         // Levels below the node that is drawn as a stand-in: tested and asked for, never drawn. 0:
         // there is none above.
         uint32_t probeLevel = 0;
@@ -85,6 +86,8 @@ private:
     void visit(uint32_t index);
     [[nodiscard]] Prediction predict(Visit& visit, const Memory& memory);
     [[nodiscard]] bool mayRise(const Visit& visit);
+    void askLate(uint32_t index);
+    void takeLateAnswers();
     [[nodiscard]] bool hasHiddenChildrenOnly(const Visit& visit);
     void ask(uint32_t index);
     void answer(uint32_t index, uint64_t visiblePx);
@@ -97,7 +100,7 @@ private:
     void standInFor(uint32_t index);
     [[nodiscard]] bool drawStandIn(uint32_t index);
     [[nodiscard]] bool isFine(const Visit& visit, double bias) const;
-    [[nodiscard]] double biasOf(const Visit& visit) const;
+    [[nodiscard]] double biasOf(uint64_t visiblePx, double outlinePx) const;
     [[nodiscard]] double priorityOf(const Visit& visit) const;
     [[nodiscard]] bool isLater(uint32_t a, uint32_t b) const;
 
@@ -108,6 +111,17 @@ private:
     FrameContext* frame_ = nullptr;
     CountingVisibility* counting_ = nullptr;
     PyramidAnswers pyramidAnswers_;
+    // Of a stop in an earlier frame.
+    struct LateQuery {
+        cache::PageId page;
+        uint32_t slot = 0;
+        double outlinePx = 0;
+        QueryTicket ticket;
+    };
+    std::deque<LateQuery> lateQueries_;  // oldest first
+    CountingVisibility* late_ = nullptr;
+    bool mayRise_ = true;  // in this frame
+    double lastTauPx_ = 0.0;
     std::vector<Visit> visits_;
     std::vector<uint32_t> queue_;   // a heap of visits, nearest first
     std::deque<uint32_t> pending_;  // visits that were asked about, oldest first

@@ -21,6 +21,11 @@ public:
         if (entry.page != node.page()) entry = {node.page(), {}};
         return entry.memory;
     }
+    // Null when the slot's memory is of another page.
+    [[nodiscard]] Memory* find(uint32_t slot, cache::PageId page) {
+        if (slot >= entries_.size() || entries_[slot].page != page) return nullptr;
+        return &entries_[slot].memory;
+    }
     void clear() { entries_.clear(); }
 
 private:

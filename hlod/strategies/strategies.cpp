@@ -13,6 +13,8 @@ constexpr std::array kStrategies = {
     StrategyRow{"coh", "coherent HLOD culling: refine, stop or delay", &makeCohStrategy},
     StrategyRow{"hzb", "as coh, boxes tested against a depth pyramid, no queries",
                 &makeHzbStrategy},
+    StrategyRow{"late", "as coh for late answers: hidden by the pyramid, errors by old queries",
+                &makeLateStrategy},
     StrategyRow{"auto", "whichever of coh, hzb and frustum pays here", &makeAutoStrategy},
 };
 

@@ -46,6 +46,7 @@ struct StrategyRow {
 [[nodiscard]] std::unique_ptr<Strategy> makeSimpStrategy(const StrategyOptions& options);
 [[nodiscard]] std::unique_ptr<Strategy> makeCohStrategy(const StrategyOptions& options);
 [[nodiscard]] std::unique_ptr<Strategy> makeHzbStrategy(const StrategyOptions& options);
+[[nodiscard]] std::unique_ptr<Strategy> makeLateStrategy(const StrategyOptions& options);
 [[nodiscard]] std::unique_ptr<Strategy> makeAutoStrategy(const StrategyOptions& options);
 
 }  // namespace pagoda::hlod

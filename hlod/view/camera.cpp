@@ -80,8 +80,6 @@ Vec3d viewDirection(std::string_view name, UpAxis up) {
 }
 
 Camera frameBox(const Camera& camera, const Box3d& box, const Vec3d& direction, UpAxis up) {
-    Camera framed = camera;
-    const Vec3d centre = box.isEmpty() ? Vec3d(0.0) : 0.5 * (box.min + box.max);
     // From above or below, the picture's up is where the front view looks: away from the viewer.
     const Vec3d above = upVector(up);
     const bool isVertical = std::abs(glm::dot(direction, above)) > 0.999;

@@ -171,7 +171,10 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
     framesDrawnTheSame_ = drawsTheSame ? framesDrawnTheSame_ + 1 : 0;
     // A stand-in may hide what it stands for, which is not asked for then: until the next frame.
     const bool decidesTheSame = lastToldHash_ == cut_.toldHash() && record.standIns == 0;
-    record.isSettled = drawsTheSame && (decidesTheSame || framesDrawnTheSame_ >= kSteadyFrames);
+    // Answers to what was asked before may still be on their way.
+    const bool isAnswered = framesDrawnTheSame_ > static_cast<int>(late_.latencyFrames());
+    record.isSettled =
+        drawsTheSame && isAnswered && (decidesTheSame || framesDrawnTheSame_ >= kSteadyFrames);
     lastCamera_ = camera;
     lastToldHash_ = cut_.toldHash();
     lastDrawnHash_ = cut_.drawnHash();

@@ -26,10 +26,10 @@ public:
         return inner_ != nullptr && inner_->isPollFree();
     }
 
-    [[nodiscard]] uint32_t latencyFrames() const noexcept { return latencyFrames_; }
     [[nodiscard]] uint64_t queriesThisFrame() const noexcept { return queries_; }
     // Frames that answers which were waited for in this frame had still to come: waiting for one
     // passes the time for all that were asked before it.
+    [[nodiscard]] uint32_t latencyFrames() const noexcept { return latencyFrames_; }
     [[nodiscard]] uint64_t stalledFrames() const noexcept { return stalledFrames_; }
 
 private:

@@ -86,7 +86,7 @@ TEST_F(StrategiesTest, BoolsSettledPictureIsTheCutAtTauBitForBit) {
 TEST_F(StrategiesTest, NoPixelIsWrongAtAnyLatency) {
     MemoryScene scene = hiddenSpheres();
     Renderer truth(scene.lattice, scene, {});
-    for (const char* name : {"bool", "sw", "coh", "hzb"}) {
+    for (const char* name : {"bool", "sw", "coh", "hzb", "late"}) {
         for (const uint32_t latency : {0u, 1u, 2u, 4u}) {
             RendererOptions options;
             options.queryLatencyFrames = latency;

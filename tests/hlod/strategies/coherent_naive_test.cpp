@@ -2,7 +2,7 @@
 // as plainly as it stands there, over random trees and answers: same queries, draws and waits, in
 // the same order. Where the listing is silent: nearest box first, ties by id; a leaf always stops;
 // of the children, one that was hidden counts 0 and one that was out of the frustum does not count;
-// what was drawn is not drawn again. One difference is known (doHiddenRefinedChildrenRise).
+// what was drawn is not drawn again.
 #include "hlod/strategies/bias.h"
 #include "hlod/view/screen_box.h"
 #include "tests/hlod/strategies/scripted_frames.h"
@@ -27,10 +27,6 @@ std::string hexName(ooc::NodeId id) {
 
 class Listing {
 public:
-    // Beyond the paper, whose candidates to rise have children that all stopped: a child that was
-    // refined, and of which nothing was seen, does not keep its parent from rising.
-    bool doHiddenRefinedChildrenRise = false;
-
     explicit Listing(const MadeRecords& records) : records_(records), v_(records.nodes().size()) {}
 
     Events events;
@@ -145,9 +141,8 @@ private:
             const V& child = v_[c];
             if (child.lastVisited != n_ - 1) continue;
             const double bias = child.isVisible ? child.bias : 0.0;
-            const bool isPassedOver = doHiddenRefinedChildrenRise && !child.isVisible;
             const bool isFine = isLeaf(c) || bias * sse(c) <= tau_;
-            if (!isPassedOver && !(child.doesStop && isFine)) return Mode::Refine;
+            if (!child.doesStop || !isFine) return Mode::Refine;
             sum += bias;
             ++count;
         }
@@ -237,7 +232,6 @@ TEST(CoherentListing, AsPublishedDoesWhatThePaperSaysOnRandomTreesAndAnswers) {
         const MadeRecords records = randomTree(dice);
         test::ScriptedFrames frames(records, hexName);
         Listing listing(records);
-        listing.doHiddenRefinedChildrenRise = true;  // as CoherentStrategy::mayRise has it
         const auto strategy = makeStrategy("coh", kPaperOptions);
         std::vector<double> shares(records.nodes().size(), 0.5);
         std::map<ooc::NodeId, Answer> answers;

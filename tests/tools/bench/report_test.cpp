@@ -150,7 +150,7 @@ TEST(PlotScripts, LongPathsAreThinnedToMeans) {
 
 TEST(PlotLegend, StaysInsideTheFigure) {
     std::vector<LegendEntry> entries;
-    for (const char* name : {"frustum", "bool", "sw", "simp", "coh", "hzb", "auto"}) {
+    for (const char* name : {"frustum", "bool", "sw", "simp", "coh", "hzb", "late", "auto"}) {
         entries.push_back({name, "#000000", LegendEntry::Mark::Line, 1});
     }
     const std::string commands = legendCommands(entries, kFigureWidthPx);
