@@ -56,7 +56,9 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 if(PAGODA_VIEWER)
   # Loaded by libEGL at run time, so no linker knows of it.
-  set(CPACK_DEBIAN_PACKAGE_RECOMMENDS libegl1 libegl-mesa0 libgl1-mesa-dri)
+  set(CPACK_DEBIAN_PACKAGE_RECOMMENDS libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri)
+  # The window's font; it has another without.
+  list(APPEND CPACK_DEBIAN_PACKAGE_RECOMMENDS fonts-dejavu-core)
   # A program that `pagoda bench --html` calls for its figures.
   list(APPEND CPACK_DEBIAN_PACKAGE_RECOMMENDS gnuplot-nox)
   list(JOIN CPACK_DEBIAN_PACKAGE_RECOMMENDS ", " CPACK_DEBIAN_PACKAGE_RECOMMENDS)

@@ -3,8 +3,8 @@
 #
 #   tools/install-packages.sh [GROUP...]      default: build
 #
-# build     compiler, libraries and a software GL: enough for tools/demo.sh
-# test      GoogleTest, Embree (rays), Python (a second reader), gnuplot
+# build     compiler, libraries, GLFW and Dear ImGui, a software GL: enough for tools/demo.sh
+# test      GoogleTest, Embree (rays), Python (a second reader), gnuplot, Xvfb and xdotool (the window)
 # report    gnuplot, for the figures of `pagoda bench --html`
 # lint      clang-format, clang-tidy
 # bench     Google Benchmark
@@ -18,8 +18,9 @@ packages_of() {
     build) echo g++ cmake ninja-build ccache pkg-config \
         libcli11-dev libdraco-dev libegl-dev libepoxy-dev libfast-float-dev libfmt-dev libglm-dev \
         libmeshoptimizer-dev libpng-dev libspdlog-dev libtinygltf-dev libwebp-dev libxxhash-dev \
-        nlohmann-json3-dev libegl1 libegl-mesa0 libgl1-mesa-dri ;;
-    test) echo libgtest-dev libgmock-dev libembree-dev python3 gnuplot-nox ;;
+        nlohmann-json3-dev libegl1 libegl-mesa0 libgl1 libgl1-mesa-dri \
+        libglfw3-dev libimgui-dev fonts-dejavu-core ;;
+    test) echo libgtest-dev libgmock-dev libembree-dev python3 gnuplot-nox xvfb xauth xdotool ;;
     report) echo gnuplot-nox ;;
     lint) echo clang-format clang-tidy git ;;
     bench) echo libbenchmark-dev ;;

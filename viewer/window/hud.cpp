@@ -11,21 +11,22 @@
 namespace pagoda::viewer {
 namespace {
 
-constexpr ImGuiWindowFlags kFixed =
-    ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
-    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
+// Numbers only: the model is dragged through them.
+constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoDecoration |
+                                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
+                                    ImGuiWindowFlags_NoSavedSettings |
+                                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
 constexpr ImU32 kStreamColour = IM_COL32(94, 160, 210, 255);
 constexpr ImU32 kTraverseColour = IM_COL32(232, 196, 84, 255);
 constexpr ImU32 kQueryColour = IM_COL32(202, 110, 178, 255);
 constexpr ImU32 kDrawColour = IM_COL32(112, 186, 118, 255);
 
-void row(const char* name, const std::string& value, const char* tip = nullptr) {
+void row(const char* name, const std::string& value) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     ImGui::TextDisabled("%s", name);
     ImGui::TableNextColumn();
     ImGui::TextUnformatted(value.c_str());
-    if (tip != nullptr && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
 }
 
 // A height that holds the slowest bar and changes seldom.
@@ -34,7 +35,11 @@ float ceilingMs(const Timeline& timeline) {
     for (size_t i = 0; i < Timeline::kFrames; ++i) {
         greatest = std::max(greatest, timeline.bar(i).totalMs());
     }
-    return std::exp2(std::ceil(std::log2(greatest)));
+    const float decade = std::pow(10.0f, std::floor(std::log10(greatest)));
+    for (const float step : {1.0f, 2.0f, 5.0f}) {
+        if (greatest <= step * decade) return step * decade;
+    }
+    return 10.0f * decade;
 }
 
 void drawTimeline(const Timeline& timeline) {
@@ -79,10 +84,9 @@ void frameRows(const Scene& scene, const ViewSettings& settings) {
     const hlod::FrameRecord& record = scene.record();
     row("frame", fmt::format("{:.1f} ms   CPU {:.0f} ms", record.frameMs, record.cpuMs));
     const bool isRaised = record.effectiveTauPx > 1.001 * settings.tauPx;
-    row("tau",
-        isRaised ? fmt::format("{:.3g} px, now {:.3g}", settings.tauPx, record.effectiveTauPx)
-                 : fmt::format("{:.3g} px", settings.tauPx),
-        "error allowed on the screen; raised while it moves, or when the cut does not fit");
+    row("tau", isRaised
+                   ? fmt::format("{:.3g} px, now {:.3g}", settings.tauPx, record.effectiveTauPx)
+                   : fmt::format("{:.3g} px", settings.tauPx));
     row("triangles",
         fmt::format("{} of {}", countText(record.drawnTriangles), countText(scene.triangles())));
     row("nodes", fmt::format("{} drawn, {} hidden", countText(record.drawnNodes),

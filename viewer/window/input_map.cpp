@@ -66,7 +66,7 @@ constexpr std::array kKeyLines = {
     KeyLine{"Click", "what is there: node, level, error, position"},
     KeyLine{"V", "frame the node that was clicked"},
     KeyLine{"Z", "freeze what is drawn, and fly away from it"},
-    KeyLine{"C", "colours: the model's, by level, node, error, stand-ins"},
+    KeyLine{"C", "colours: the model's, by level, node, error"},
     KeyLine{"X", "wireframe"},
     KeyLine{nullptr, "Steer"},
     KeyLine{"Tab", "panel: strategy, tau, budgets, frame rate"},

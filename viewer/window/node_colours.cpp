@@ -48,7 +48,8 @@ glm::u8vec3 levelColour(int depth) {
 }
 
 glm::u8vec3 errorColour(double share) {
-    const double t = std::clamp(share, 0.0, 1.0);
+    // Six halvings of what is allowed: most errors are far below it.
+    const double t = share > 0.0 ? std::clamp(1.0 + std::log2(share) / 6.0, 0.0, 1.0) : 0.0;
     const Vec3d low(62, 104, 190), middle(110, 186, 110), high(214, 66, 52);
     const Vec3d colour =
         t < 0.5 ? glm::mix(low, middle, 2.0 * t) : glm::mix(middle, high, 2.0 * t - 1.0);

@@ -11,7 +11,7 @@ namespace pagoda::viewer {
 
 // sRGB, opaque; distinct for neighbouring levels.
 [[nodiscard]] glm::u8vec3 levelColour(int depth);
-// From blue (no error) over green to red (`share` of what is allowed is 1).
+// Red where the error is all that is allowed (`share` 1), green at an eighth, blue from a 64th on.
 [[nodiscard]] glm::u8vec3 errorColour(double share);
 
 }  // namespace pagoda::viewer

@@ -149,7 +149,7 @@ void showKeys() {
     ImGui::Begin("keys", nullptr, kFixed);
     if (ImGui::BeginTable("keys", 2)) {
         ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 12.0f * em);
-        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 24.0f * em);
+        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 26.5f * em);
         for (const KeyLine& line : keyLines()) {
             ImGui::TableNextRow();
             ImGui::TableNextColumn();

@@ -12,6 +12,8 @@ namespace {
 
 // Coarser than that, a moving picture says too little; it rather comes slower.
 constexpr double kGreatestMovingTauPx = 16.0;
+// Of the first picture, which shall come at once.
+constexpr double kFirstTauPx = 40.0;
 
 // The model's point that `sample` shows at the pixel's centre.
 struct SeenPoint {
@@ -50,6 +52,7 @@ void Scene::restart(const RendererOptions& options) {
     renderer_.reset();  // its GPU memory goes before new one is asked for
     renderer_ = std::make_unique<Renderer>(database_.header().lattice, source_, options);
     record_ = {};
+    hasDrawn_ = false;
 }
 
 std::string Scene::name() const {
@@ -76,6 +79,10 @@ hlod::Strategy& Scene::strategyFor(const ViewSettings& settings) {
 
 double Scene::tauFor(const ViewSettings& settings, bool isMoving) {
     isCoarsened_ = false;
+    if (!hasDrawn_) {  // something to look at comes before all detail
+        isCoarsened_ = true;
+        return std::max(settings.tauPx, kFirstTauPx);
+    }
     if (!settings.holdsFrameRate || frozen_) return settings.tauPx;
     if (!rateControl_ || rateTargetFps_ != settings.targetFps) {
         rateTargetFps_ = settings.targetFps;
@@ -103,6 +110,7 @@ const hlod::FrameRecord& Scene::draw(const hlod::Camera& camera, const ViewSetti
     renderer_->runner().setPrefetch(settings.runtime.doesPrefetch && !frozen_);
     hlod::Strategy& strategy = strategyFor(settings);
     record_ = renderer_->renderLive(camera, strategy, options);
+    hasDrawn_ |= record_.drawnNodes > 0;
     record_.strategy = frozen_ ? "frozen" : settings.strategy;
     if (rateControl_ && isMoving && settings.holdsFrameRate && !frozen_) {
         rateControl_->update({.tauPx = settings.tauPx,

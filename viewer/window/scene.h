@@ -45,6 +45,7 @@ public:
     [[nodiscard]] const hlod::FrameRecord& record() const noexcept { return record_; }
     // Did the last frame draw what will be drawn until something changes?
     [[nodiscard]] bool isSettled() const noexcept { return record_.isSettled && !isCoarsened_; }
+    [[nodiscard]] bool hasDrawn() const noexcept { return hasDrawn_; }  // anything yet
     [[nodiscard]] bool isWaitingForPages() const noexcept { return record_.missingPages > 0; }
 
     // The visible set of the last frame stays, wherever the eye goes.
@@ -84,8 +85,9 @@ private:
     std::unique_ptr<FrozenCut> frozen_;
     std::optional<hlod::FrameRateControl> rateControl_;
     double rateTargetFps_ = 0.0;
-    bool isCoarsened_ = false;  // the last frame was drawn at a tau that only moving views get
-    hlod::Camera camera_;       // of the last frame
+    bool isCoarsened_ = false;  // the last frame's tau was raised for the sake of time
+    bool hasDrawn_ = false;
+    hlod::Camera camera_;  // of the last frame
     hlod::FrameRecord record_;
 };
 

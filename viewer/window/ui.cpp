@@ -44,6 +44,7 @@ void setStyle(float scale) {
     style.WindowPadding = {12.0f, 10.0f};
     style.FramePadding = {8.0f, 4.0f};
     style.ItemSpacing = {8.0f, 5.0f};
+    style.WindowMinSize = {16.0f, 16.0f};
     style.CellPadding = {6.0f, 2.0f};
     const ImVec4 accent(0.30f, 0.56f, 0.72f, 1.0f), accentDark(0.22f, 0.40f, 0.52f, 1.0f);
     ImVec4* const colours = style.Colors;

@@ -20,10 +20,12 @@ constexpr double kLoadSeconds = 0.01;
 // A still view that nothing comes for, and that yet does not come to rest, is tried less often.
 constexpr int kRestlessFrames = 60;
 constexpr double kRestlessSeconds = 0.25;
+constexpr double kFirstSeconds = 0.002;  // the same, before anything has come
+constexpr double kBlankSeconds = 0.3;    // an empty picture is shown when nothing comes for so long
 constexpr double kMaxStepSeconds = 0.1;  // a slow frame must not throw the eye through a wall
 
-constexpr glm::u8vec4 kDrawnColour{255, 105, 180, 255};  // pink
-constexpr glm::u8vec4 kHiddenColour{250, 214, 70, 255};  // yellow
+constexpr glm::u8vec4 kDrawnColour{255, 105, 180, 190};  // pink
+constexpr glm::u8vec4 kHiddenColour{250, 214, 70, 190};  // yellow
 constexpr glm::u8vec4 kFrustumColour{240, 244, 248, 255};
 
 double nowSeconds() {
@@ -78,11 +80,13 @@ void ViewApp::open(const std::filesystem::path& path) {
         options_.cameraJson.clear();  // of the first model alone
     }
     isSceneDirty_ = true;
+    openedS_ = nowSeconds();
     window_.setTitle(scene_->name() + " - Pagoda");
     log_.write("opened", {{"file", path.string()}});
 }
 
 double ViewApp::waitSeconds() const {
+    if (scene_ && !scene_->hasDrawn()) return kFirstSeconds;
     if (!hasPresented_ || isSceneDirty_ || isCameraMoving_ || uiFrames_ > 0) return 0.0;
     if (!scene_ || scene_->isSettled()) return replay_ ? 0.0 : kIdleSeconds;
     if (restlessFrames_ > kRestlessFrames) return kRestlessSeconds;
@@ -104,6 +108,8 @@ void ViewApp::step() {
     bool hasDrawn = false;
     guarded([&] { hasDrawn = drawScene(); });
     if (!hasDrawn && uiFrames_ == 0) return;
+    // What opens shows the model, if that comes soon.
+    if (scene_ && !scene_->hasDrawn() && now < openedS_ + kBlankSeconds) return;
     present();
     if (hasDrawn) logFrame();
 }

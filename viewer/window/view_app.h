@@ -98,7 +98,7 @@ private:
     bool isSceneDirty_ = true, isCameraMoving_ = false, hasPresented_ = false;
     int uiFrames_ = kUiFrames;
     int restlessFrames_ = 0;  // still view, nothing comes, and it is not settled
-    double lastStepS_ = 0.0;
+    double lastStepS_ = 0.0, openedS_ = 0.0;
     uint64_t frames_ = 0;
 };
 

@@ -1,0 +1,235 @@
+#!/usr/bin/env python3
+"""The window under real input events on a virtual screen.
+
+    window_test.py PAGODA [FOLDER]    FOLDER: keeps what is written there
+
+Truth comes from `pagoda render`, which shares no code with the window's loop, and from geometry.
+Python 3 standard library, Xvfb and xdotool; exit code 77 without them."""
+import array
+import json
+import math
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from screen import Screen, Window
+
+WIDTH, HEIGHT = 640, 480
+
+
+def check(condition, what):
+    if not condition:
+        raise AssertionError(what)
+
+
+def distance(a, b):
+    return math.dist(a, b)
+
+
+class Test:
+    def __init__(self, binary, folder, screen):
+        self.binary, self.folder, self.screen = binary, Path(folder), screen
+        self.database = self.folder / "room.pagoda"
+        self.run("generate", "interior", "--triangles", 60000, "-o", self.folder / "room.glb",
+                 "--force")
+        self.run("build", self.folder / "room.glb", "-o", self.database, "--up", "z",
+                 "--node-triangles", 1024, "--force")
+
+    def run(self, *arguments, **popen):
+        return subprocess.run([self.binary, "--quiet", *map(str, arguments)], check=True,
+                              capture_output=True, text=True, **popen)
+
+    def open(self, *arguments):
+        return Window(self.screen, self.binary, self.folder, self.database, "--size",
+                      f"{WIDTH}x{HEIGHT}", *arguments)
+
+    # Tests: what their names say.
+
+    def test_the_first_picture_settles_and_a_still_window_draws_nothing(self):
+        with self.open() as window:
+            window.wait_settled(width=WIDTH, height=HEIGHT)
+            # Keys that mean nothing and a mouse that only moves are handled before the screenshot.
+            window.mark()
+            window.move(300, 400)
+            window.xdotool("key", "F7")
+            window.xdotool("key", "p")
+            window.wait_event("screenshot")
+            since = [line["event"] for line in window.lines()[window.seen:]]
+            check("frame" not in since, f"a still window drew frames: {since}")
+
+    def test_dragging_turns_and_pans_and_the_wheel_goes_nearer(self):
+        with self.open() as window:
+            first = window.wait_settled()
+            window.drag((320, 240), (420, 260))
+            turned = window.wait_settled()
+            check(distance(first["eye"], turned["eye"]) > 0.01, "the eye did not move")
+            check(first["mode"] == turned["mode"] == "orbit", "the mode changed")
+            window.drag((320, 240), (380, 240), button=3)
+            panned = window.wait_settled()
+            eye = [b - a for a, b in zip(turned["eye"], panned["eye"])]
+            target = [b - a for a, b in zip(turned["target"], panned["target"])]
+            check(distance(eye, [0, 0, 0]) > 0.01, "panning did not move the eye")
+            check(distance(eye, target) < 1e-6 * distance(panned["eye"], [0, 0, 0]),
+                  "panning turned the view")
+            window.click(320, 240)
+            picked = window.wait_event("pick")["point"]
+            window.click(320, 240, button=4)
+            nearer = window.wait_settled()
+            check(distance(nearer["eye"], picked) < distance(panned["eye"], picked),
+                  "the wheel did not go nearer to what is under the cursor")
+
+    def test_keys_frame_axis_views_modes_strategies_and_tau(self):
+        with self.open("--strategy", "frustum") as window:
+            first = window.wait_settled()
+            window.key("5")
+            top = window.wait_settled()
+            along = [t - e for e, t in zip(top["eye"], top["target"])]
+            check(abs(along[2]) > 0.999 * distance(along, [0, 0, 0]) and along[2] < 0,
+                  f"the view from the top looks along {along}")
+            window.key("h")
+            home = window.wait_settled()
+            check(distance(home["eye"], first["eye"]) < 1e-9 * distance(first["eye"], [0, 0, 0]),
+                  "home is elsewhere")
+            window.key("t")
+            check(window.wait_settled()["strategy"] == "bool", "T did not switch the strategy")
+            window.key("period")
+            check(window.wait_settled()["tau"] > home["tau"], "tau did not rise")
+            window.key("g")
+            check(window.wait_settled()["mode"] == "fly", "G does not fly")
+            before = window.frames()[-1]["eye"]
+            window.mark()
+            window.xdotool("keydown", "w", "sleep", "0.2", "keyup", "w")
+            check(distance(window.wait_settled()["eye"], before) > 1e-3, "W does not fly on")
+
+    def test_a_pick_is_where_render_says_and_a_screenshot_is_its_picture(self):
+        with self.open("--strategy", "frustum") as window:
+            window.wait_settled()
+            window.key("ctrl+c")
+            camera = json.loads(window.wait_event("camera")["json"])
+            window.key("p")
+            shot = Path(window.wait_event("screenshot")["file"])
+            window.click(250, 300)
+            pick = window.wait_event("pick")
+        exact = self.folder / "exact.png"
+        depth, ids = self.folder / "exact.pfm", self.folder / "exact.ids"
+        camera_file = self.folder / "camera.json"
+        camera_file.write_text(json.dumps(camera))
+        self.run("render", self.database, "-o", exact, "--camera", camera_file, "--strategy",
+                 "frustum", "--depth", depth, "--ids", ids)
+        check(shot.read_bytes() == exact.read_bytes(), "the screenshot is not render's picture")
+        pixels = array.array("f", depth.read_bytes()[-4 * WIDTH * HEIGHT:])
+        along = pixels[(HEIGHT - 1 - 300) * WIDTH + 250]
+        forward = [t - e for e, t in zip(camera["eye"], camera["target"])]
+        length = distance(forward, [0, 0, 0])
+        seen = sum((p - e) * f / length for p, e, f in zip(pick["point"], camera["eye"], forward))
+        check(abs(seen - along) < 1e-5 * along, f"picked at {seen}, render says {along}")
+        table = json.loads((self.folder / "exact.ids.json").read_text())
+        words = array.array("I", ids.read_bytes())
+        node, triangle = words[2 * (300 * WIDTH + 250):][:2]
+        check(pick["node"] == table["nodes"][node - 1] and pick["triangle"] == triangle,
+              f"picked {pick}, render drew {table['nodes'][node - 1]} {triangle}")
+
+    def test_what_is_frozen_stays_while_the_eye_leaves(self):
+        with self.open("--strategy", "coh") as window:
+            first = window.wait_settled()
+            window.key("z")
+            frozen = window.wait_settled(frozen=True)
+            check(frozen["drawn_nodes"] == first["drawn_nodes"], "freezing changed the cut")
+            window.key("5")
+            above = window.wait_settled(frozen=True)
+            check(above["drawn_nodes"] <= frozen["drawn_nodes"], "the frozen cut grew")
+            check(above["eye"] != frozen["eye"], "the eye stayed")
+            window.key("z")
+            window.wait_settled(frozen=False)
+
+    def test_the_picture_follows_the_windows_size(self):
+        with self.open() as window:
+            window.wait_settled()
+            window.resize(800, 500)
+            window.wait_event("resized", width=800, height=500)
+            window.wait_settled(width=800, height=500)
+
+    def test_a_recorded_path_is_replayed_frame_by_frame(self):
+        with self.open() as window:
+            window.wait_settled()
+            window.key("r")
+            window.drag((320, 240), (390, 200))
+            window.wait_settled()
+            window.key("p")
+            first = Path(window.wait_event("screenshot")["file"])
+            window.key("r")
+            written = window.wait_event("path")
+            path = json.loads(Path(written["file"]).read_text())
+            check(len(path["frames"]) == written["frames"] >= 2, "the path is too short")
+            window.key("h")
+            window.wait_settled()
+            window.key("shift+r")
+            window.wait_event("message", text="replayed")
+            eyes = [line["eye"] for line in window.lines()[window.seen:] if line["event"] == "frame"]
+            for number, frame in enumerate(path["frames"]):
+                check(frame["eye"] in eyes, f"frame {number} of the path was not drawn")
+            window.key("p")
+            second = Path(window.wait_event("screenshot")["file"])
+            check(first.read_bytes() == second.read_bytes(), "the replay's picture differs")
+
+    def test_it_closes_while_it_loads(self):
+        with self.open("--disk", "1MB/s,200ms") as window:
+            window.wait_for("a frame with pages missing", lambda line: line["event"] == "frame" and
+                            line["missing_pages"] > 0)
+            window.key("ctrl+q")
+            code, err = window.end()
+            check(code == 0 and not err, f"exit code {code}: {err}")
+            check(window.lines()[-1]["event"] == "closed", "it did not come to its end")
+
+    def test_ctrl_c_in_the_terminal_ends_it(self):
+        with self.open() as window:
+            window.wait_settled()
+            window.process.send_signal(signal.SIGINT)
+            code, _ = window.end()
+            check(code == 130, f"exit code {code}")
+
+    def test_without_a_display_it_names_the_commands_that_need_none(self):
+        environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        run = subprocess.run([self.binary, "view", self.database], env=environment,
+                             capture_output=True, text=True)
+        check(run.returncode == 1, f"exit code {run.returncode}")
+        check("pagoda render" in run.stderr and run.stderr.count("\n") == 1, run.stderr)
+
+    def test_what_is_no_database_is_said_in_one_line(self):
+        broken = self.folder / "broken.pagoda"
+        broken.write_bytes(b"no database at all" * 100)
+        window = Window(self.screen, self.binary, self.folder, broken)
+        code, err = window.end()
+        check(code == 1 and "broken.pagoda" in err and err.count("\n") == 1, err)
+
+
+def main(arguments):
+    if len(arguments) not in (1, 2):
+        print(__doc__, file=sys.stderr)
+        return 2
+    missing = [name for name in ("Xvfb", "xdotool") if shutil.which(name) is None]
+    if missing:
+        print(f"SKIPPED: the window is not tested: no {' and no '.join(missing)}; "
+              "tools/install-packages.sh test", file=sys.stderr)
+        return 77
+    binary = Path(arguments[0]).resolve()
+    failures = 0
+    with tempfile.TemporaryDirectory() as temporary, Screen() as screen:
+        test = Test(binary, arguments[1] if len(arguments) == 2 else temporary, screen)
+        only = os.environ.get("ONLY", "")
+        for name in [n for n in dir(Test) if n.startswith("test_") and only in n]:
+            try:
+                getattr(test, name)()
+                print("passed", name[5:].replace("_", " "), flush=True)
+            except (AssertionError, subprocess.SubprocessError) as error:
+                failures += 1
+                print("FAILED", name[5:].replace("_", " ") + ":", error, flush=True)
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
