@@ -7,7 +7,7 @@ namespace pagoda::cache {
 
 void LruPages::insert(PageId page, uint64_t sizeBytes, uint64_t frameIndex) {
     assert(sizeBytes > 0 && sizeBytes <= budgetBytes_ - usedBytes());
-    const auto [found, isNew] = pages_.emplace(page, Entry{sizeBytes, frameIndex, false});
+    const auto [found, isNew] = pages_.emplace(page, Entry{sizeBytes, frameIndex, false, 0});
     assert(isNew);
     static_cast<void>(isNew);
     addEvictable(page, found->second);
@@ -34,7 +34,23 @@ void LruPages::pin(PageId page) {
     entry.isPinned = true;
     pinnedBytes_ += entry.sizeBytes;
     removeEvictable(page, entry);
-    pinned_.push_back(page);
+    pinned_.emplace_back(page, &entry);
+}
+
+std::optional<LruPages::Used> LruPages::use(PageId page, uint64_t frameIndex, bool isDemand) {
+    const auto found = pages_.find(page);
+    if (found == pages_.end()) return std::nullopt;
+    Entry& entry = found->second;
+    if (!entry.isPinned) {
+        removeEvictable(page, entry);
+        entry.isPinned = true;
+        pinnedBytes_ += entry.sizeBytes;
+        pinned_.emplace_back(page, &entry);
+    }
+    entry.lastFrame = frameIndex;
+    const bool isNewDemand = isDemand && entry.demandedFrame != frameIndex;
+    if (isDemand) entry.demandedFrame = frameIndex;
+    return Used{entry.sizeBytes, isNewDemand};
 }
 
 void LruPages::unpin(PageId page) {
@@ -43,14 +59,13 @@ void LruPages::unpin(PageId page) {
     entry.isPinned = false;
     pinnedBytes_ -= entry.sizeBytes;
     addEvictable(page, entry);
-    std::erase(pinned_, page);
+    std::erase_if(pinned_, [&](const auto& pinned) { return pinned.first == page; });
 }
 
 void LruPages::unpinAll() {
-    for (const PageId& page : pinned_) {
-        Entry& entry = pages_.at(page);
-        entry.isPinned = false;
-        addEvictable(page, entry);
+    for (const auto& [page, entry] : pinned_) {
+        entry->isPinned = false;
+        addEvictable(page, *entry);
     }
     pinned_.clear();
     pinnedBytes_ = 0;

@@ -9,8 +9,10 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace pagoda::cache {
@@ -32,6 +34,12 @@ public:
     void pin(PageId page);
     void unpin(PageId page);
     void unpinAll();
+    struct Used {
+        uint64_t sizeBytes = 0;
+        bool isNewDemand = false;  // the first of the frame with `isDemand`
+    };
+    // touch() and pin() at once, for what a frame uses thousands of times; nullopt when absent.
+    [[nodiscard]] std::optional<Used> use(PageId page, uint64_t frameIndex, bool isDemand);
     // Forgets a page that is there and not pinned (asserted).
     void erase(PageId page);
 
@@ -62,6 +70,7 @@ private:
         uint64_t sizeBytes = 0;
         uint64_t lastFrame = 0;
         bool isPinned = false;
+        uint64_t demandedFrame = 0;
     };
     struct Key {
         uint64_t lastFrame;
@@ -77,9 +86,9 @@ private:
     uint64_t budgetBytes_;
     uint64_t usedBytes_ = 0, pinnedBytes_ = 0, reservedBytes_ = 0;
     std::unordered_map<PageId, Entry, PageIdHash> pages_;
-    std::set<Key> evictable_;                      // the pages that are not pinned, oldest first
-    std::map<uint64_t, uint64_t> evictableBytes_;  // of them, by the frame of last use
-    std::vector<PageId> pinned_;
+    std::set<Key> evictable_;                        // the pages that are not pinned, oldest first
+    std::map<uint64_t, uint64_t> evictableBytes_;    // of them, by the frame of last use
+    std::vector<std::pair<PageId, Entry*>> pinned_;  // entries stay where they are
 };
 
 }  // namespace pagoda::cache

@@ -164,10 +164,8 @@ PageState Residency::want(const PageRequest& request, bool isStandIn) {
         counters_.usedPrefetchedBytes += found->second;
         prefetched_.erase(found);
     }
-    if (gpuLru_.contains(id)) {
-        gpuLru_.touch(id, frameIndex_);
-        gpuLru_.pin(id);
-        demand(id, gpuLru_.sizeBytes(id), isStandIn);
+    if (const auto used = gpuLru_.use(id, frameIndex_, !isStandIn)) {
+        if (used->isNewDemand) demandBytes_ += used->sizeBytes;
         return PageState::Resident;
     }
     if (failed_.contains(id) || !couldFit(request)) return PageState::Failed;

@@ -138,7 +138,7 @@ private:
     std::vector<PageFault> faults_;
     Coming sent_;                                      // sent for
     Coming toUpload_;                                  // waiting to be uploaded
-    std::unordered_set<PageId, PageIdHash> demanded_;  // in this frame
+    std::unordered_set<PageId, PageIdHash> demanded_;  // in this frame, and absent
     uint64_t demandBytes_ = 0, missingPages_ = 0;
     Counters counters_;
     uint64_t frameIndex_ = 0;

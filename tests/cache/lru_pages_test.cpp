@@ -195,5 +195,26 @@ TEST(LruPages, AgreesWithANaiveListOverRandomUse) {
     }
 }
 
+TEST(LruPages, UseTouchesPinsAndTellsTheFirstDemandOfAFrame) {
+    LruPages pages(100);
+    EXPECT_FALSE(pages.use(page(1), 1, true));
+    pages.insert(page(1), 40, 1);
+    const auto standIn = pages.use(page(1), 2, false);
+    ASSERT_TRUE(standIn);
+    EXPECT_EQ(standIn->sizeBytes, 40u);
+    EXPECT_FALSE(standIn->isNewDemand);
+    EXPECT_TRUE(pages.use(page(1), 2, true)->isNewDemand);
+    EXPECT_FALSE(pages.use(page(1), 2, true)->isNewDemand);
+    EXPECT_EQ(pages.pinnedBytes(), 40u);
+    std::vector<PageId> evicted;
+    EXPECT_FALSE(pages.makeRoom(70, evicted));
+    pages.unpinAll();
+    EXPECT_FALSE(pages.makeRoom(70, evicted, 2));  // used in frame 2
+    EXPECT_TRUE(pages.use(page(1), 3, true)->isNewDemand);
+    pages.unpinAll();
+    EXPECT_TRUE(pages.makeRoom(70, evicted, 4));
+    EXPECT_EQ(evicted, std::vector{page(1)});
+}
+
 }  // namespace
 }  // namespace pagoda::cache
