@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# From a fresh clone to pictures: generates a power plant, builds its database and renders it.
+# From a fresh clone to pictures: generates a power plant, builds its database, renders it and, from
+# a terminal with a display, opens it in a window.
 #
 #   tools/demo.sh [TRIANGLES]                 default 2000000
 #
@@ -39,3 +40,9 @@ say "Done. Look at:"
 for name in site boiler-house turbine-hall machine-room; do
     echo "  $PWD/out/$name.png"
 done
+if [ -n "${DISPLAY:-}" ] && [ -t 1 ]; then
+    say "The window: F1 shows every key, Ctrl+Q closes it"
+    "$pagoda" view out/plant.pagoda
+else
+    echo "  with a display: $pagoda view out/plant.pagoda"
+fi

@@ -94,6 +94,14 @@ class Test:
             home = window.wait_settled()
             check(distance(home["eye"], first["eye"]) < 1e-9 * distance(first["eye"], [0, 0, 0]),
                   "home is elsewhere")
+            window.key("ctrl+c")
+            window.wait_event("camera")
+            window.key("7")
+            window.wait_settled()
+            window.key("ctrl+v")
+            pasted = window.wait_settled()
+            check(distance(pasted["eye"], home["eye"]) < 1e-9 * distance(home["eye"], [0, 0, 0]),
+                  "the pasted camera is not the copied one")
             window.key("t")
             check(window.wait_settled()["strategy"] == "bool", "T did not switch the strategy")
             window.key("period")
@@ -184,6 +192,11 @@ class Test:
             code, err = window.end()
             check(code == 0 and not err, f"exit code {code}: {err}")
             check(window.lines()[-1]["event"] == "closed", "it did not come to its end")
+
+    def test_a_view_beside_the_model_comes_to_rest(self):
+        camera = '{"eye": [100, 100, 100], "target": [200, 200, 200], "up": [0, 0, 1]}'
+        with self.open("--camera", camera) as window:
+            check(window.wait_settled()["drawn_nodes"] == 0, "something is in view")
 
     def test_ctrl_c_in_the_terminal_ends_it(self):
         with self.open() as window:

@@ -14,6 +14,7 @@ namespace {
 constexpr double kGreatestMovingTauPx = 16.0;
 // Of the first picture, which shall come at once.
 constexpr double kFirstTauPx = 40.0;
+constexpr uint64_t kMaxBlankFrames = 200;
 
 // The model's point that `sample` shows at the pixel's centre.
 struct SeenPoint {
@@ -53,6 +54,7 @@ void Scene::restart(const RendererOptions& options) {
     renderer_ = std::make_unique<Renderer>(database_.header().lattice, source_, options);
     record_ = {};
     hasDrawn_ = false;
+    framesSinceStart_ = 0;
 }
 
 std::string Scene::name() const {
@@ -99,6 +101,9 @@ void Scene::setTint(const ViewSettings& settings) {
     renderer_->device().setTint(
         tintOf(settings.colouring, record_.effectiveTauPx > 0 ? record_.effectiveTauPx : 1.0));
     renderer_->device().setWireframe(settings.isWireframe);
+    // Lines hide nothing: what was learnt from surfaces is wrong for them, and the other way round.
+    if (isWireframe_ != settings.isWireframe && strategy_) strategy_->forget();
+    isWireframe_ = settings.isWireframe;
 }
 
 const hlod::FrameRecord& Scene::draw(const hlod::Camera& camera, const ViewSettings& settings,
@@ -110,7 +115,10 @@ const hlod::FrameRecord& Scene::draw(const hlod::Camera& camera, const ViewSetti
     renderer_->runner().setPrefetch(settings.runtime.doesPrefetch && !frozen_);
     hlod::Strategy& strategy = strategyFor(settings);
     record_ = renderer_->renderLive(camera, strategy, options);
-    hasDrawn_ |= record_.drawnNodes > 0;
+    // A view beside the model has nothing to wait for, nor has one whose pages do not come.
+    ++framesSinceStart_;
+    hasDrawn_ |=
+        record_.drawnNodes > 0 || record_.missingPages == 0 || framesSinceStart_ >= kMaxBlankFrames;
     record_.strategy = frozen_ ? "frozen" : settings.strategy;
     if (rateControl_ && isMoving && settings.holdsFrameRate && !frozen_) {
         rateControl_->update({.tauPx = settings.tauPx,
@@ -123,6 +131,7 @@ const hlod::FrameRecord& Scene::draw(const hlod::Camera& camera, const ViewSetti
 }
 
 void Scene::freeze() {
+    if (!hasDrawn_) return;  // there is no visible set yet
     frozen_ = std::make_unique<FrozenCut>(renderer_->runner().cut(), camera_);
 }
 

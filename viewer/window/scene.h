@@ -36,7 +36,8 @@ public:
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;
 
-    // Begins anew with other budgets: nothing is resident afterwards.
+    // Begins anew with other budgets: nothing is resident afterwards. When it throws Error there is
+    // nothing left to draw with: the scene must go.
     void restart(const RendererOptions& options);
 
     // Draws a frame. `isMoving`: the view will not stay as it is.
@@ -86,7 +87,8 @@ private:
     std::optional<hlod::FrameRateControl> rateControl_;
     double rateTargetFps_ = 0.0;
     bool isCoarsened_ = false;  // the last frame's tau was raised for the sake of time
-    bool hasDrawn_ = false;
+    bool hasDrawn_ = false, isWireframe_ = false;
+    uint64_t framesSinceStart_ = 0;
     hlod::Camera camera_;  // of the last frame
     hlod::FrameRecord record_;
 };

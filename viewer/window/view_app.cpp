@@ -1,5 +1,6 @@
 #include "viewer/window/view_app.h"
 
+#include "ooc/base/error.h"
 #include "ooc/base/file.h"
 
 #include <epoxy/gl.h>
@@ -85,7 +86,23 @@ void ViewApp::open(const std::filesystem::path& path) {
     log_.write("opened", {{"file", path.string()}});
 }
 
+void ViewApp::restart() {
+    isRestartWanted_ = false;
+    pick_.reset();
+    readRate_.clear();
+    try {
+        scene_->restart(settings_.runtime);
+    } catch (const Error& error) {
+        scene_.reset();
+        navigation_.reset();
+        replay_.reset();
+        say(error.what(), true);
+    }
+}
+
 double ViewApp::waitSeconds() const {
+    const glm::ivec2 size = window_.framebufferPx();
+    if (size.x < 1 || size.y < 1) return kIdleSeconds;  // minimised
     if (scene_ && !scene_->hasDrawn()) return kFirstSeconds;
     if (!hasPresented_ || isSceneDirty_ || isCameraMoving_ || uiFrames_ > 0) return 0.0;
     if (!scene_ || scene_->isSettled()) return replay_ ? 0.0 : kIdleSeconds;
@@ -104,6 +121,7 @@ void ViewApp::step() {
     std::erase_if(messages_, [&](const Message& m) { return !m.isError && m.untilSeconds < now; });
     if (messages_.size() != messages) uiFrames_ = kUiFrames;
 
+    if (isRestartWanted_) restart();
     advance(std::min(passed, kMaxStepSeconds));
     bool hasDrawn = false;
     guarded([&] { hasDrawn = drawScene(); });
@@ -200,9 +218,7 @@ void ViewApp::showPanels() {
         if (settings_.showsSteering) {
             const Change change = showSteering(settings_, scene_->record());
             if (change.isRuntime) {
-                guarded([&] { scene_->restart(settings_.runtime); });
-                pick_.reset();
-                readRate_.clear();
+                isRestartWanted_ = true;  // not while panels show the scene
             }
             isSceneDirty_ |= change.isLook || change.isRuntime;
         }

@@ -44,6 +44,7 @@ private:
 
     // view_app.cpp
     void open(const std::filesystem::path& path);
+    void restart();
     [[nodiscard]] double waitSeconds() const;
     void advance(double seconds);
     [[nodiscard]] bool drawScene();
@@ -96,6 +97,7 @@ private:
     int replayWaits_ = 0;
 
     bool isSceneDirty_ = true, isCameraMoving_ = false, hasPresented_ = false;
+    bool isRestartWanted_ = false;
     int uiFrames_ = kUiFrames;
     int restlessFrames_ = 0;  // still view, nothing comes, and it is not settled
     double lastStepS_ = 0.0, openedS_ = 0.0;
