@@ -3,6 +3,7 @@ for a time to pass: all waits are for a line in the log, and end only with a fai
 import json
 import os
 import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -120,6 +121,12 @@ class Window:
         self.mark()
         window = self.xdotool("search", "--name", "Pagoda").split()[0]
         self.xdotool("windowsize", window, width, height)
+
+    def drop(self, file):
+        self.mark()
+        window = self.xdotool("search", "--name", "Pagoda").split()[0]
+        subprocess.run([sys.executable, Path(__file__).parent / "drop.py", window, file],
+                       env=self.screen.environment, check=True, timeout=PATIENCE_S)
 
     def end(self):
         """Waits for the end: (exit code, stderr)."""

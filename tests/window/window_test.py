@@ -184,6 +184,20 @@ class Test:
             second = Path(window.wait_event("screenshot")["file"])
             check(first.read_bytes() == second.read_bytes(), "the replay's picture differs")
 
+    def test_a_dropped_database_opens_and_what_is_none_is_said_in_the_window(self):
+        other = self.folder / "other.pagoda"
+        shutil.copy(self.database, other)
+        wrong = self.folder / "wrong.pagoda"
+        wrong.write_bytes(b"no database at all" * 100)
+        with self.open() as window:
+            window.wait_settled()
+            window.drop(wrong)
+            said = window.wait_event("message", is_error=True)
+            check("wrong.pagoda" in said["text"], said["text"])
+            window.drop(other)
+            check(window.wait_event("opened")["file"] == str(other), "another file was opened")
+            window.wait_settled()
+
     def test_it_closes_while_it_loads(self):
         with self.open("--disk", "1MB/s,200ms") as window:
             window.wait_for("a frame with pages missing", lambda line: line["event"] == "frame" and
