@@ -177,12 +177,14 @@ void showPick(const Pick& pick, const hlod::FrameRecord& record) {
         row("triangles",
             fmt::format("{}, {} in the leaves below", countText(pick.node.triangleCount),
                         countText(pick.node.subtreeTriangles)));
-        row("error",
-            fmt::format("{} units, {:.3g} px of {:.3g}", lengthText(pick.node.errorModelUnits),
-                        pick.ssePx, record.effectiveTauPx));
+        row("error", fmt::format("{} units, {:.3g} px here", lengthText(pick.node.errorModelUnits),
+                                 pick.errorHerePx));
+        row("SSE", fmt::format("{:.3g} px of {:.3g}, nearest of its box", pick.ssePx,
+                               record.effectiveTauPx));
         row("page", bytesText(pick.node.pageBytes));
         row("here", fmt::format("{:.10g}  {:.10g}  {:.10g}", p.x, p.y, p.z));
         row("distance", lengthText(pick.distanceModelUnits));
+        if (pick.fromLastModelUnits) row("from the last", lengthText(*pick.fromLastModelUnits));
         row("not finer", whyNotFiner(pick, record));
         if ((pick.node.flags & ooc::kNodeSloppy) != 0) row("clustered", "parts could not merge");
         if ((pick.node.flags & ooc::kNodeStuck) != 0) row("stuck", "locked borders keep it fine");

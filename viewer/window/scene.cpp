@@ -169,6 +169,8 @@ std::optional<Pick> Scene::pick(glm::dvec2 px) {
             pick.boxModel = *nodes[i].boxModel;
             pick.isStandIn = i < standIns.size() && standIns[i] != 0;
             pick.ssePx = view.ssePx(pick.node.errorModelUnits, pick.boxModel);
+            pick.errorHerePx = pick.node.errorModelUnits * camera_.heightPx /
+                               (2.0 * view.tanY() * pick.distanceModelUnits);
             return true;
         }
         return false;

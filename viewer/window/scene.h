@@ -24,8 +24,10 @@ struct Pick {
     ooc::NodeRecord node;
     Box3d boxModel;
     uint32_t triangle = 0;
-    double ssePx = 0.0;
+    double ssePx = 0.0;        // of the nearest place of its box: what the traversal goes by
+    double errorHerePx = 0.0;  // the same error at the point
     bool isStandIn = false;
+    std::optional<double> fromLastModelUnits;  // between this point and the one picked before
 };
 
 class Scene {

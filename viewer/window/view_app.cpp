@@ -27,6 +27,7 @@ constexpr double kMaxStepSeconds = 0.1;  // a slow frame must not throw the eye 
 
 constexpr glm::u8vec4 kDrawnColour{255, 105, 180, 190};  // pink
 constexpr glm::u8vec4 kHiddenColour{250, 214, 70, 190};  // yellow
+constexpr glm::u8vec4 kPickColour{142, 204, 240, 230};   // light blue
 constexpr glm::u8vec4 kFrustumColour{240, 244, 248, 255};
 
 double nowSeconds() {
@@ -158,7 +159,7 @@ bool ViewApp::drawScene() {
     timeline_.add(record);
     readRate_.add(nowSeconds(),
                   scene_->renderer().runner().streaming().requests().counters().bytesRead);
-    drawFrozenLines();
+    drawLines();
     if (isRecording_ && (recorded_.empty() || !(recorded_.back() == navigation_->camera()))) {
         recorded_.push_back(navigation_->camera());
     }
@@ -167,20 +168,24 @@ bool ViewApp::drawScene() {
     return true;
 }
 
-void ViewApp::drawFrozenLines() {
-    const FrozenCut* const frozen = scene_->frozen();
-    if (frozen == nullptr) return;
+void ViewApp::drawLines() {
+    if (pick_) lines_.addBox(pick_->boxModel, kPickColour);
+    if (scene_->frozen() != nullptr) addFrozenLines(*scene_->frozen());
+    lines_.draw(hlod::View(navigation_->camera(), scene_->box()),
+                *scene_->renderer().device().target());
+}
+
+void ViewApp::addFrozenLines(const FrozenCut& frozen) {
     if (settings_.showsHiddenBoxes) {
-        for (const Box3d& box : frozen->hiddenBoxes()) lines_.addBox(box, kHiddenColour);
+        for (const Box3d& box : frozen.hiddenBoxes()) lines_.addBox(box, kHiddenColour);
     }
     if (settings_.showsDrawnBoxes) {
-        for (const Box3d& box : frozen->drawnBoxes()) lines_.addBox(box, kDrawnColour);
+        for (const Box3d& box : frozen.drawnBoxes()) lines_.addBox(box, kDrawnColour);
     }
     const Box3d box = scene_->box();
     const double reach =
-        1.2 * hlod::distance(frozen->camera().eye, box) + 0.6 * glm::distance(box.min, box.max);
-    lines_.addFrustum(frozen->camera(), reach, kFrustumColour);
-    lines_.draw(hlod::View(navigation_->camera(), box), *scene_->renderer().device().target());
+        1.2 * hlod::distance(frozen.camera().eye, box) + 0.6 * glm::distance(box.min, box.max);
+    lines_.addFrustum(frozen.camera(), reach, kFrustumColour);
 }
 
 void ViewApp::present() {

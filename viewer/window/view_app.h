@@ -48,7 +48,8 @@ private:
     [[nodiscard]] double waitSeconds() const;
     void advance(double seconds);
     [[nodiscard]] bool drawScene();
-    void drawFrozenLines();
+    void drawLines();
+    void addFrozenLines(const FrozenCut& frozen);
     void present();
     void showPanels();
     void logFrame();

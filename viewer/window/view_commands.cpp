@@ -225,7 +225,12 @@ void ViewApp::toggleFreeze() {
 }
 
 void ViewApp::pickAt(glm::dvec2 px) {
+    const std::optional<Pick> last = pick_;
     pick_ = scene_->pick(px);
+    isSceneDirty_ |= last || pick_;  // the node's box
+    if (last && pick_) {
+        pick_->fromLastModelUnits = glm::distance(last->pointModel, pick_->pointModel);
+    }
     if (!pick_) return log_.write("pick", {{"node", nullptr}});
     const Vec3d& p = pick_->pointModel;
     log_.write("pick", {{"node", fmt::format("0x{:x}", pick_->node.id.value)},
@@ -325,6 +330,7 @@ void ViewApp::dismiss() {
         messages_.clear();
     } else if (pick_) {
         pick_.reset();
+        isSceneDirty_ = true;
     } else {
         replay_.reset();
     }
