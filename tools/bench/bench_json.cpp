@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <thread>
-
 namespace pagoda::tools {
 namespace {
 
@@ -114,31 +112,17 @@ std::string benchToJson(const BenchPlan& plan, const std::vector<BenchRun>& runs
                         const std::string& device) {
     Json list = Json::array();
     for (const BenchRun& run : runs) list.push_back(toJson(run));
-    const hlod::StrategyOptions options = plan.runtime.strategyOptions();
-    const std::string name = plan.database.substr(plan.database.find_last_of('/') + 1);
-    const Json json = {
-        {"database", name},
-        {"model",
-         {{"triangles", plan.modelTriangles},
-          {"nodes", plan.modelNodes},
-          {"bytes", plan.modelBytes}}},
-        {"command", plan.command},
-        {"machine", {{"cores", std::thread::hardware_concurrency()}, {"device", device}}},
-        {"settings",
-         {{"bias", {options.biasS, options.biasT, options.biasFloor}},
-          {"as_published", options.isAsPublished},
-          {"caution", options.caution},
-          {"host_budget", plan.runtime.hostBudget},
-          {"gpu_budget", plan.runtime.gpuBudget},
-          {"upload_budget", plan.runtime.uploadBudget},
-          {"disk", plan.runtime.disk},
-          {"speed", plan.speed},
-          {"repeats", plan.repeats},
-          {"truth_every", plan.truthEvery},
-          {"reference_every", plan.referenceEvery}}},
-        {"runs", list},
-        {"ratios", ratiosJson(runs)},
-    };
+    Json json = headJson(plan, device);
+    json["settings"].update({{"host_budget", plan.runtime.hostBudget},
+                             {"gpu_budget", plan.runtime.gpuBudget},
+                             {"upload_budget", plan.runtime.uploadBudget},
+                             {"disk", plan.runtime.disk},
+                             {"speed", plan.speed},
+                             {"repeats", plan.repeats},
+                             {"truth_every", plan.truthEvery},
+                             {"reference_every", plan.referenceEvery}});
+    json["runs"] = list;
+    json["ratios"] = ratiosJson(runs);
     return json.dump(1);
 }
 

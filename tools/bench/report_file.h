@@ -3,10 +3,13 @@
 #pragma once
 
 #include "tools/bench/statistics.h"
+#include "tools/runtime_options.h"
 
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace CLI {
@@ -32,6 +35,23 @@ struct PictureSize {
 [[nodiscard]] PictureSize parsePictureSize(const std::string& text);
 
 using Json = nlohmann::ordered_json;
+// What every report begins with, from a plan of its own kind: what was measured, by which command,
+// where, and how visibility was weighed ("settings", to which more may be added).
+template <typename Plan>
+[[nodiscard]] Json headJson(const Plan& plan, const std::string& device) {
+    const hlod::StrategyOptions options = plan.runtime.strategyOptions();
+    return {{"database", std::filesystem::path(plan.database).filename().string()},
+            {"model",
+             {{"triangles", plan.modelTriangles},
+              {"nodes", plan.modelNodes},
+              {"bytes", plan.modelBytes}}},
+            {"command", plan.command},
+            {"machine", {{"cores", std::thread::hardware_concurrency()}, {"device", device}}},
+            {"settings",
+             {{"bias", {options.biasS, options.biasT, options.biasFloor}},
+              {"as_published", options.isAsPublished},
+              {"caution", options.caution}}}};
+}
 // Rounded to six digits: more is noise, and reports get committed.
 [[nodiscard]] double shown(double value);
 [[nodiscard]] Json numbersJson(const Spread& spread);

@@ -1,9 +1,6 @@
 #include "tools/bench/report_file.h"
 #include "tools/stress/stress.h"
 
-#include <filesystem>
-#include <thread>
-
 namespace pagoda::tools {
 namespace {
 
@@ -100,30 +97,18 @@ std::string stressToJson(const StressPlan& plan, const std::vector<StressCell>& 
                           {"effective_tau", numbersJson(cell.tauSeries)}};
         list.push_back(std::move(json));
     }
-    const hlod::StrategyOptions options = plan.runtime.strategyOptions();
-    const Json json = {
-        {"database", std::filesystem::path(plan.database).filename().string()},
-        {"model",
-         {{"triangles", plan.modelTriangles},
-          {"nodes", plan.modelNodes},
-          {"bytes", plan.modelBytes}}},
-        {"command", plan.command},
-        {"machine", {{"cores", std::thread::hardware_concurrency()}, {"device", device}}},
-        {"settings",
-         {{"strategy", plan.runtime.strategy},
-          {"tau", plan.runtime.tauPx},
-          {"bias", {options.biasS, options.biasT, options.biasFloor}},
-          {"as_published", options.isAsPublished},
-          {"caution", options.caution},
-          {"query_latency", plan.runtime.queryLatencyFrames},
-          {"width", plan.widthPx},
-          {"height", plan.heightPx},
-          {"frames", plan.frames},
-          {"fps", plan.framesPerSecond},
-          {"seed", plan.seed},
-          {"hitch", {{"over_median", kHitchOverMedian}, {"over_ms", kHitchMs}}}}},
-        {"cells", list},
-    };
+    Json json = headJson(plan, device);
+    json["settings"].update(
+        {{"strategy", plan.runtime.strategy},
+         {"tau", plan.runtime.tauPx},
+         {"query_latency", plan.runtime.queryLatencyFrames},
+         {"width", plan.widthPx},
+         {"height", plan.heightPx},
+         {"frames", plan.frames},
+         {"fps", plan.framesPerSecond},
+         {"seed", plan.seed},
+         {"hitch", {{"over_median", kHitchOverMedian}, {"over_ms", kHitchMs}}}});
+    json["cells"] = list;
     return json.dump(1);
 }
 
