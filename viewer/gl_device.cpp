@@ -26,6 +26,7 @@ std::vector<hlod::Node> translucentBackToFront(std::span<const hlod::Node> nodes
                                               : a.node.page() < b.node.page();
     });
     std::vector<hlod::Node> order;
+    order.reserve(keys.size());
     for (const Key& key : keys) order.push_back(key.node);
     return order;
 }

@@ -68,7 +68,7 @@ TreeBuilder::Subtree TreeBuilder::buildLeaf(ooc::NodeId id, std::span<const Soup
 // evenly when it does not (only for triangles that no cell can part).
 std::vector<TreeBuilder::Subtree> TreeBuilder::cutExtraLeaves(ooc::NodeId cell,
                                                               std::span<const SoupTriangle> all,
-                                                              Numbers numbers) {
+                                                              const Numbers& numbers) {
     if (numbers.empty()) return {};
     const CellFrame frame = frameOf(cell);
     const int shift = std::max(0, frame.bits - 21);
@@ -114,7 +114,7 @@ TreeBuilder::Subtree TreeBuilder::buildCell(ooc::NodeId cell, std::span<const So
         if (parts[octant].empty()) continue;
         children.push_back(buildCell(cell.child(octant), all, std::move(parts[octant])));
     }
-    std::vector<Subtree> extra = cutExtraLeaves(cell, all, std::move(own));
+    std::vector<Subtree> extra = cutExtraLeaves(cell, all, own);
     std::move(extra.begin(), extra.end(), std::back_inserter(children));
     return buildInner(cell, std::move(children));
 }
@@ -184,7 +184,7 @@ void TreeBuilder::buildExtraLeaves(ooc::NodeId cell, std::span<const std::byte> 
     const std::vector<SoupTriangle> all = unpack(soup);
     Numbers numbers(all.size());
     for (uint32_t i = 0; i < numbers.size(); ++i) numbers[i] = i;
-    (void)cutExtraLeaves(cell, all, std::move(numbers));
+    (void)cutExtraLeaves(cell, all, numbers);
 }
 
 void TreeBuilder::buildTopNode(ooc::NodeId cell) {

@@ -53,7 +53,7 @@ private:
     Subtree buildCell(ooc::NodeId cell, std::span<const SoupTriangle> all, Numbers numbers);
     Subtree buildLeaf(ooc::NodeId id, std::span<const SoupTriangle> all, const Numbers& numbers);
     std::vector<Subtree> cutExtraLeaves(ooc::NodeId cell, std::span<const SoupTriangle> all,
-                                        Numbers numbers);
+                                        const Numbers& numbers);
     Subtree buildInner(ooc::NodeId cell, std::vector<Subtree> children);
 
     const TreeSettings& settings_;

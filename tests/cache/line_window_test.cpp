@@ -39,7 +39,7 @@ struct Line {
         return request;
     }
     // A frame of the run time: takes what has come, asks, sends; then time passes.
-    void frame(uint64_t asked, std::vector<Request> urgent = {}) {
+    void frame(uint64_t asked, const std::vector<Request>& urgent = {}) {
         std::vector<RequestQueue::Arrival> arrivals;
         requests.collect(arrivals);
         for (const auto& arrival : arrivals) {

@@ -55,6 +55,7 @@ public:
             order.insert(order.end(), family.begin(), family.end());
         }
         std::vector<ooc::NodeRecord> records;
+        records.reserve(order.size());
         for (const size_t node : order) records.push_back(nodes_[node]);
         for (const auto& numbers :
              ooc::packIndexBlocks(records, cache::IndexCache::kSlotsPerBlock)) {

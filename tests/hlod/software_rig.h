@@ -91,10 +91,9 @@ inline WrongPixels wrongPixels(const Rig& rig, const FrameRecord& record, const 
     WrongPixels counts;
     for (size_t i = 0; i < drawn.pixelCount(); ++i) {
         const bool isDrawn = drawn.nodeOrdinals[i] != 0, isRight = right.nodeOrdinals[i] != 0;
-        if (isDrawn && isRight && drawn.nodeAt(i) == right.nodeAt(i) &&
-            drawn.triangles[i] == right.triangles[i]) {
-            ++counts.same;
-        } else if (!isDrawn && !isRight) {
+        const bool isSameTriangle = isDrawn && isRight && drawn.nodeAt(i) == right.nodeAt(i) &&
+                                    drawn.triangles[i] == right.triangles[i];
+        if (isSameTriangle || (!isDrawn && !isRight)) {
             ++counts.same;
         } else if (drawn.depths[i] == right.depths[i]) {
             ++counts.tied;

@@ -243,8 +243,10 @@ private:
     std::vector<uint64_t> countByObjects(const hlod::View& view, const std::vector<Box3d>& boxes) {
         objects_.beginFrame(view, latticeView_, lattice_);
         std::vector<hlod::QueryTicket> tickets;
+        tickets.reserve(boxes.size());
         for (const Box3d& box : boxes) tickets.push_back(objects_.query(box));
         std::vector<uint64_t> counts;
+        counts.reserve(boxes.size());
         for (const hlod::QueryTicket ticket : tickets) counts.push_back(objects_.wait(ticket));
         return counts;
     }

@@ -218,7 +218,7 @@ public:
           strategy_(hlod::makeStrategy("coh")) {}
 
     hlod::FrameRecord run(const hlod::Camera& camera, double tauPx) {
-        const hlod::FrameRecord record = runner_.run(camera, *strategy_, {tauPx});
+        hlod::FrameRecord record = runner_.run(camera, *strategy_, {tauPx});
         meter_->finishDecoding();
         clock_.advance(kFrameS);
         return record;

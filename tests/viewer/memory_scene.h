@@ -119,7 +119,7 @@ public:
 
 private:
     void fillNode(size_t index, ooc::NodeId id, const Vec3i& cell, int bits,
-                  std::vector<Triangle> triangles, size_t leafTriangles) {
+                  const std::vector<Triangle>& triangles, size_t leafTriangles) {
         Box3i box;
         for (const Triangle& t : triangles) {
             for (const Vec3i& corner : t.corners) box.extend(corner);

@@ -25,7 +25,7 @@ std::string shellWord(const std::string& text) {
     if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
     std::string quoted = "'";
     for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return quoted + "'";
+    return quoted += "'";
 }
 
 bool isReport(const std::string& option) {
@@ -34,11 +34,11 @@ bool isReport(const std::string& option) {
 
 std::string csvCell(const Json& value) {
     if (!value.is_string()) return value.dump();
-    const auto text = value.get<std::string>();
+    auto text = value.get<std::string>();
     if (text.find_first_of(",\"\n") == std::string::npos) return text;
     std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + "\"";
+    for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
+    return quoted += '"';
 }
 
 void addCells(const std::string& name, const Json& value, std::vector<std::string>& names,

@@ -114,6 +114,7 @@ std::string stressToJson(const StressPlan& plan, const std::vector<StressCell>& 
 
 std::string stressToCsv(const std::vector<StressCell>& cells) {
     std::vector<Json> rows;
+    rows.reserve(cells.size());
     for (const StressCell& cell : cells) rows.push_back(summaryOf(cell));
     return csvOf(rows);
 }

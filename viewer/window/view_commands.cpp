@@ -245,7 +245,7 @@ void ViewApp::pickAt(glm::dvec2 px) {
 
 std::filesystem::path ViewApp::freeName(const std::string& ending) const {
     for (int number = 1;; ++number) {
-        const std::filesystem::path path =
+        std::filesystem::path path =
             options_.outputFolder / fmt::format("{}-{}{}", scene_->name(), number, ending);
         std::error_code ignored;
         if (!std::filesystem::exists(path, ignored)) return path;
