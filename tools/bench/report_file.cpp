@@ -46,7 +46,10 @@ void addCells(const std::string& name, const Json& value, std::vector<std::strin
     if (value.is_array()) return;
     if (value.is_object()) {
         for (const auto& [key, inner] : value.items()) {
-            addCells(name.empty() ? key : name + "/" + key, inner, names, cells);
+            std::string path = name;
+            if (!path.empty()) path += '/';
+            path += key;
+            addCells(path, inner, names, cells);
         }
         return;
     }
