@@ -5,6 +5,7 @@
 // its result sets exitCode.
 #pragma once
 
+#include "ooc/base/number_text.h"
 #include "ooc/base/progress.h"
 
 #include <cstdint>
@@ -38,8 +39,5 @@ void addPathCommand(CLI::App& app, Session& session);
 
 // "512MiB", "4GB", "1048576" -> bytes. Throws CLI::ValidationError on anything else.
 [[nodiscard]] uint64_t parseBytes(const std::string& text);
-// 1234567 -> "1.2 MB"; 1234567 -> "1,234,567".
-[[nodiscard]] std::string formatBytes(uint64_t bytes);
-[[nodiscard]] std::string formatCount(uint64_t count);
 
 }  // namespace pagoda::tools

@@ -12,25 +12,6 @@ constexpr uint32_t kNoParent = UINT32_MAX;
 
 }  // namespace
 
-void PyramidAnswers::beginFrame(PyramidVisibility& pyramid, FrameRecord& record) {
-    pyramid_ = &pyramid;
-    record_ = &record;
-    boxes_.clear();
-    isBuilt_ = false;
-}
-
-QueryTicket PyramidAnswers::query(const QueryShape& shape) {
-    boxes_.push_back(std::get<Box3d>(shape));
-    ++record_->queries;
-    return {boxes_.size() - 1};
-}
-
-uint64_t PyramidAnswers::wait(QueryTicket ticket) {
-    if (!isBuilt_) pyramid_->build();
-    isBuilt_ = true;
-    return pyramid_->visiblePixels(boxes_[ticket.value]);
-}
-
 // The next frame may be of another device: what this one was asked stays unanswered.
 void CoherentStrategy::forget() {
     memory_.clear();
@@ -48,7 +29,7 @@ void CoherentStrategy::traverse(FrameContext& frame) {
     }
     ++frameNumber_;
     // In a still view nothing gets coarser, whatever is learnt about it.
-    mayRise_ = rules_.options.isAsPublished || !frame.isSameView || frame.tauPx > lastTauPx_;
+    mayCoarsen_ = rules_.options.isAsPublished || !frame.isSameView || frame.tauPx > lastTauPx_;
     lastTauPx_ = frame.tauPx;
     visits_.clear();
     const auto root = frame.tree.root();
@@ -187,7 +168,7 @@ void CoherentStrategy::takeLateAnswers() {
     }
 }
 
-CoherentStrategy::Prediction CoherentStrategy::predict(Visit& visit, const Memory& memory) {
+CoherentStrategy::Prediction CoherentStrategy::predict(const Visit& visit, const Memory& memory) {
     if (rules_.predict == CoherentRules::Predict::Never) return Prediction::Delay;
     // New, back in the frustum, or hidden.
     if (memory.visitedFrame + 1 != frameNumber_ || !memory.isVisible) return Prediction::Delay;
@@ -225,7 +206,7 @@ bool CoherentStrategy::hasHiddenChildrenOnly(const Visit& visit) {
 // Would the node do in place of its children, by what they answered? A hidden child weighs nothing;
 // one that was out of the frustum does not count.
 bool CoherentStrategy::mayRise(const Visit& visit) {
-    if (!mayRise_) return false;
+    if (!mayCoarsen_) return false;
     const NodeRange children = frame_->tree.children(visit.node);
     double biasSum = 0.0;
     uint32_t count = 0;
@@ -270,7 +251,7 @@ void CoherentStrategy::answer(uint32_t index, uint64_t visiblePx) {
     }
     markVisible(index);
     memory.bias = lastBias_ = biasOf(visiblePx, boxPixels(frame_->view, *visit.node.boxModel));
-    const bool staysRefined = !mayRise_ && memory.refinedFrame + 1 == frameNumber_;
+    const bool staysRefined = !mayCoarsen_ && memory.refinedFrame + 1 == frameNumber_;
     memory.isStop = isFine(visit, memory.bias) && !staysRefined;
     if (!wasStop) {
         ++counts.delayVisible;

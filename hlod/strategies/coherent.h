@@ -9,6 +9,7 @@
 #pragma once
 
 #include "hlod/strategies/node_memory.h"
+#include "hlod/strategies/pyramid_answers.h"
 #include "hlod/strategies/strategies.h"
 
 #include <cstdint>
@@ -30,22 +31,6 @@ struct CoherentRules {
     // Stops are asked about by queries whose answers come in later frames, the rest by the pyramid.
     bool takesLateAnswers = false;
     StrategyOptions options{};
-};
-
-// Answers from a depth pyramid, which is built when the first one is waited for: every box of the
-// frame is tested against what was drawn by then.
-class PyramidAnswers final : public CountingVisibility {
-public:
-    void beginFrame(PyramidVisibility& pyramid, FrameRecord& record);
-    [[nodiscard]] QueryTicket query(const QueryShape& shape) override;
-    [[nodiscard]] std::optional<uint64_t> poll(QueryTicket ticket) override { return wait(ticket); }
-    [[nodiscard]] uint64_t wait(QueryTicket ticket) override;
-
-private:
-    PyramidVisibility* pyramid_ = nullptr;
-    FrameRecord* record_ = nullptr;
-    std::vector<Box3d> boxes_;
-    bool isBuilt_ = false;
 };
 
 class CoherentStrategy final : public Strategy {
@@ -84,7 +69,7 @@ private:
     void push(const Node& node, uint32_t parent, uint32_t probeLevel);
     [[nodiscard]] uint32_t pop();
     void visit(uint32_t index);
-    [[nodiscard]] Prediction predict(Visit& visit, const Memory& memory);
+    [[nodiscard]] Prediction predict(const Visit& visit, const Memory& memory);
     [[nodiscard]] bool mayRise(const Visit& visit);
     void askLate(uint32_t index);
     void takeLateAnswers();
@@ -120,7 +105,7 @@ private:
     };
     std::deque<LateQuery> lateQueries_;  // oldest first
     CountingVisibility* late_ = nullptr;
-    bool mayRise_ = true;  // in this frame
+    bool mayCoarsen_ = true;  // in this frame
     double lastTauPx_ = 0.0;
     std::vector<Visit> visits_;
     std::vector<uint32_t> queue_;   // a heap of visits, nearest first

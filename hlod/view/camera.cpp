@@ -12,10 +12,6 @@ namespace {
 // Share of the picture's half size that a framed box may fill.
 constexpr double kFrameFill = 0.94;
 
-Vec3d upVector(UpAxis up) {
-    return up == UpAxis::Y ? Vec3d(0, 1, 0) : Vec3d(0, 0, 1);
-}
-
 struct Axes {
     Vec3d right, up, forward;
 };
@@ -59,6 +55,10 @@ Vec3d signedAxes(std::string_view name) {
 }
 
 }  // namespace
+
+Vec3d upVector(UpAxis up) {
+    return up == UpAxis::Y ? Vec3d(0, 1, 0) : Vec3d(0, 0, 1);
+}
 
 Vec3d viewDirection(std::string_view name, UpAxis up) {
     const Vec3d above = upVector(up);

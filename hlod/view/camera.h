@@ -31,6 +31,9 @@ struct Camera {
 [[nodiscard]] std::string cameraToJson(const Camera& camera);
 
 enum class UpAxis { Y, Z };
+[[nodiscard]] Vec3d upVector(UpAxis up);
+// Of a database's metadata: z unless it says y. Whatever else stands there is no error.
+[[nodiscard]] UpAxis upAxisOf(const std::string& metadataJson);
 
 // Unit vector from the model to the eye. Names: front, back, left, right, top, bottom, iso (front,
 // right and a little above), or signs and axes ("+x", "-y+z", "+x+y+z": the eye is on that side).

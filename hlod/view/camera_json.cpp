@@ -97,4 +97,10 @@ std::string cameraToJson(const Camera& camera) {
     return value.dump();
 }
 
+UpAxis upAxisOf(const std::string& metadataJson) {
+    const auto metadata = json::parse(metadataJson, nullptr, false);
+    const bool isY = metadata.is_object() && metadata.contains("up") && metadata["up"] == "y";
+    return isY ? UpAxis::Y : UpAxis::Z;
+}
+
 }  // namespace pagoda::hlod

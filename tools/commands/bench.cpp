@@ -11,7 +11,6 @@
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include <cstdio>
 #include <filesystem>
@@ -136,8 +135,7 @@ void bench(Arguments& arguments, Session& session) {
     plan.modelTriangles = database.header().triangleCount;
     plan.modelNodes = database.header().nodeCount;
     plan.modelBytes = database.header().fileBytes;
-    const auto metadata = nlohmann::json::parse(database.metadataJson(), nullptr, false);
-    if (metadata.is_object() && metadata.value("up", "") == "y") plan.worldUp = {0, 1, 0};
+    plan.worldUp = Vec3f(hlod::upVector(hlod::upAxisOf(database.metadataJson())));
     const viewer::GlContext context = viewer::GlContext::headless();
     std::vector<BenchRun> runs;
     for (const BenchConfiguration& configuration : plan.configurations) {

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -40,10 +39,8 @@ struct Arguments {
 };
 
 hlod::UpAxis upAxis(const Arguments& arguments, const ooc::Database& database) {
-    if (!arguments.up.empty()) return arguments.up == "y" ? hlod::UpAxis::Y : hlod::UpAxis::Z;
-    const auto metadata = nlohmann::json::parse(database.metadataJson(), nullptr, false);
-    const bool isYUp = metadata.is_object() && metadata.contains("up") && metadata["up"] == "y";
-    return isYUp ? hlod::UpAxis::Y : hlod::UpAxis::Z;
+    if (arguments.up.empty()) return hlod::upAxisOf(database.metadataJson());
+    return arguments.up == "y" ? hlod::UpAxis::Y : hlod::UpAxis::Z;
 }
 
 void writeText(const std::string& text, const std::string& target, bool force) {

@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include <iostream>
 #include <memory>
@@ -44,14 +43,8 @@ struct Arguments {
 };
 
 hlod::UpAxis upAxis(const Arguments& arguments, const ooc::Database& database) {
-    std::string up = arguments.up;
-    if (up.empty()) {
-        const auto metadata = nlohmann::json::parse(database.metadataJson(), nullptr, false);
-        if (metadata.is_object() && metadata.contains("up") && metadata["up"].is_string()) {
-            up = metadata["up"].get<std::string>();
-        }
-    }
-    return up == "y" || up == "Y" ? hlod::UpAxis::Y : hlod::UpAxis::Z;
+    if (arguments.up.empty()) return hlod::upAxisOf(database.metadataJson());
+    return arguments.up == "y" ? hlod::UpAxis::Y : hlod::UpAxis::Z;
 }
 
 void parseSize(const std::string& text, hlod::Camera& camera) {
@@ -100,7 +93,7 @@ hlod::FrameRecord draw(viewer::Renderer& renderer, const Arguments& arguments,
     viewer::RenderOptions options;
     options.tauPx = arguments.detail == "full" ? 0.0 : arguments.runtime.tauPx;
     options.background = parseBackground(arguments.background);
-    options.worldUp = up == hlod::UpAxis::Y ? Vec3f(0, 1, 0) : Vec3f(0, 0, 1);
+    options.worldUp = Vec3f(hlod::upVector(up));
     if (arguments.isReference) {
         return renderer.renderReference(camera, options, [&] { progress.check(); });
     }

@@ -60,8 +60,7 @@ void fillPlan(Arguments& arguments) {
     plan.modelNodes = database.header().nodeCount;
     plan.modelBytes = database.header().fileBytes;
     if (arguments.up.empty()) {
-        const auto metadata = Json::parse(database.metadataJson(), nullptr, false);
-        if (metadata.is_object() && metadata.value("up", "") == "y") plan.up = hlod::UpAxis::Y;
+        plan.up = hlod::upAxisOf(database.metadataJson());
     } else if (arguments.up == "y") {
         plan.up = hlod::UpAxis::Y;
     }

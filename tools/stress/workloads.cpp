@@ -75,7 +75,7 @@ const WorkloadPath& WorkloadPaths::through() {
 
 WorkloadPath WorkloadPaths::zigzag() {
     const WorkloadPath& way = through();
-    const Vec3d axis = up_ == hlod::UpAxis::Y ? Vec3d(0, 1, 0) : Vec3d(0, 0, 1);
+    const Vec3d axis = hlod::upVector(up_);
     WorkloadPath zigzag = way;
     size_t place = 0;
     for (size_t i = 0; i < frames_; ++i) {

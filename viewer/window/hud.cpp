@@ -1,5 +1,6 @@
+#include "ooc/base/number_text.h"
 #include "viewer/window/panels.h"
-#include "viewer/window/text.h"
+#include "viewer/window/ui.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -20,14 +21,6 @@ constexpr ImU32 kStreamColour = IM_COL32(94, 160, 210, 255);
 constexpr ImU32 kTraverseColour = IM_COL32(232, 196, 84, 255);
 constexpr ImU32 kQueryColour = IM_COL32(202, 110, 178, 255);
 constexpr ImU32 kDrawColour = IM_COL32(112, 186, 118, 255);
-
-void row(const char* name, const std::string& value) {
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    ImGui::TextDisabled("%s", name);
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted(value.c_str());
-}
 
 // A height that holds the slowest bar and changes seldom.
 float ceilingMs(const Timeline& timeline) {
@@ -82,30 +75,30 @@ void drawTimeline(const Timeline& timeline) {
 
 void frameRows(const Scene& scene, const ViewSettings& settings) {
     const hlod::FrameRecord& record = scene.record();
-    row("frame", fmt::format("{:.1f} ms   CPU {:.0f} ms", record.frameMs, record.cpuMs));
+    numberRow("frame", fmt::format("{:.1f} ms   CPU {:.0f} ms", record.frameMs, record.cpuMs));
     const bool isRaised = record.effectiveTauPx > 1.001 * settings.tauPx;
-    row("tau", isRaised
-                   ? fmt::format("{:.3g} px, now {:.3g}", settings.tauPx, record.effectiveTauPx)
-                   : fmt::format("{:.3g} px", settings.tauPx));
-    row("triangles",
-        fmt::format("{} of {}", countText(record.drawnTriangles), countText(scene.triangles())));
-    row("nodes", fmt::format("{} drawn, {} hidden", countText(record.drawnNodes),
-                             countText(record.hiddenNodes)));
-    row("looked at", fmt::format("{}, {} outside", countText(record.visitedNodes),
-                                 countText(record.culledNodes)));
-    row("queries", fmt::format("{}, {} waits", countText(record.queries), record.waits));
-    if (record.standIns > 0) row("stand-ins", countText(record.standIns));
+    numberRow("tau",
+              isRaised ? fmt::format("{:.3g} px, now {:.3g}", settings.tauPx, record.effectiveTauPx)
+                       : fmt::format("{:.3g} px", settings.tauPx));
+    numberRow("triangles", fmt::format("{} of {}", formatCount(record.drawnTriangles),
+                                       formatCount(scene.triangles())));
+    numberRow("nodes", fmt::format("{} drawn, {} hidden", formatCount(record.drawnNodes),
+                                   formatCount(record.hiddenNodes)));
+    numberRow("looked at", fmt::format("{}, {} outside", formatCount(record.visitedNodes),
+                                       formatCount(record.culledNodes)));
+    numberRow("queries", fmt::format("{}, {} waits", formatCount(record.queries), record.waits));
+    if (record.standIns > 0) numberRow("stand-ins", formatCount(record.standIns));
 }
 
 void memoryRows(const hlod::FrameRecord& record, const Streaming& streaming) {
     const auto share = [](uint64_t used, uint64_t budget) {
-        return fmt::format("{} of {}", bytesText(static_cast<double>(used)),
-                           bytesText(static_cast<double>(budget)));
+        return fmt::format("{} of {}", formatBytes(used), formatBytes(budget));
     };
-    row("GPU", share(record.gpuBytes, streaming.gpuBudgetBytes));
-    row("host", share(record.hostBytes, streaming.hostBudgetBytes));
-    row("reads", fmt::format("{} in flight, {} waiting", streaming.inFlight, streaming.waiting));
-    row("rate", bytesText(streaming.bytesPerSecond) + "/s");
+    numberRow("GPU", share(record.gpuBytes, streaming.gpuBudgetBytes));
+    numberRow("host", share(record.hostBytes, streaming.hostBudgetBytes));
+    numberRow("reads",
+              fmt::format("{} in flight, {} waiting", streaming.inFlight, streaming.waiting));
+    numberRow("rate", formatBytes(static_cast<uint64_t>(streaming.bytesPerSecond)) + "/s");
 }
 
 }  // namespace

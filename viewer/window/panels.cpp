@@ -1,7 +1,8 @@
 #include "viewer/window/panels.h"
 
+#include "ooc/base/number_text.h"
 #include "viewer/window/input_map.h"
-#include "viewer/window/text.h"
+#include "viewer/window/ui.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -27,14 +28,6 @@ void place(float shareX, float shareY, float marginX, float marginY) {
     ImGui::SetNextWindowPos(
         {marginX + shareX * (size.x - 2 * marginX), marginY + shareY * (size.y - 2 * marginY)},
         ImGuiCond_Always, {shareX, shareY});
-}
-
-void row(const char* name, const std::string& value) {
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    ImGui::TextDisabled("%s", name);
-    ImGui::TableNextColumn();
-    ImGui::TextUnformatted(value.c_str());
 }
 
 bool strategyCombo(ViewSettings& settings) {
@@ -173,21 +166,25 @@ void showPick(const Pick& pick, const hlod::FrameRecord& record) {
     ImGui::TextColored(kAccent, "node 0x%llx", static_cast<unsigned long long>(pick.node.id.value));
     if (ImGui::BeginTable("rows", 2)) {
         const Vec3d& p = pick.pointModel;
-        row("level", fmt::format("{}{}", pick.node.id.depth(), pick.node.isLeaf() ? ", leaf" : ""));
-        row("triangles",
-            fmt::format("{}, {} in the leaves below", countText(pick.node.triangleCount),
-                        countText(pick.node.subtreeTriangles)));
-        row("error", fmt::format("{} units, {:.3g} px here", lengthText(pick.node.errorModelUnits),
-                                 pick.errorHerePx));
-        row("SSE", fmt::format("{:.3g} px of {:.3g}, nearest of its box", pick.ssePx,
-                               record.effectiveTauPx));
-        row("page", bytesText(pick.node.pageBytes));
-        row("here", fmt::format("{:.10g}  {:.10g}  {:.10g}", p.x, p.y, p.z));
-        row("distance", lengthText(pick.distanceModelUnits));
-        if (pick.fromLastModelUnits) row("from the last", lengthText(*pick.fromLastModelUnits));
-        row("not finer", whyNotFiner(pick, record));
-        if ((pick.node.flags & ooc::kNodeSloppy) != 0) row("clustered", "parts could not merge");
-        if ((pick.node.flags & ooc::kNodeStuck) != 0) row("stuck", "locked borders keep it fine");
+        numberRow("level",
+                  fmt::format("{}{}", pick.node.id.depth(), pick.node.isLeaf() ? ", leaf" : ""));
+        numberRow("triangles",
+                  fmt::format("{}, {} in the leaves below", formatCount(pick.node.triangleCount),
+                              formatCount(pick.node.subtreeTriangles)));
+        numberRow("error", fmt::format("{} units, {:.3g} px here",
+                                       lengthText(pick.node.errorModelUnits), pick.errorHerePx));
+        numberRow("SSE", fmt::format("{:.3g} px of {:.3g}, nearest of its box", pick.ssePx,
+                                     record.effectiveTauPx));
+        numberRow("page", formatBytes(pick.node.pageBytes));
+        numberRow("here", fmt::format("{:.10g}  {:.10g}  {:.10g}", p.x, p.y, p.z));
+        numberRow("distance", lengthText(pick.distanceModelUnits));
+        if (pick.fromLastModelUnits)
+            numberRow("from the last", lengthText(*pick.fromLastModelUnits));
+        numberRow("not finer", whyNotFiner(pick, record));
+        if ((pick.node.flags & ooc::kNodeSloppy) != 0)
+            numberRow("clustered", "parts could not merge");
+        if ((pick.node.flags & ooc::kNodeStuck) != 0)
+            numberRow("stuck", "locked borders keep it fine");
         ImGui::EndTable();
     }
     ImGui::End();

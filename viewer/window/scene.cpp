@@ -2,8 +2,6 @@
 
 #include "viewer/window/node_colours.h"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <limits>
 
@@ -33,14 +31,10 @@ SeenPoint pointOf(const PixelSample& sample, const hlod::View& view, int xPx, in
 
 }  // namespace
 
-hlod::UpAxis upAxisOf(const ooc::Database& database) {
-    const auto metadata = nlohmann::json::parse(database.metadataJson(), nullptr, false);
-    const bool isY = metadata.is_object() && metadata.contains("up") && metadata["up"] == "y";
-    return isY ? hlod::UpAxis::Y : hlod::UpAxis::Z;
-}
-
 Scene::Scene(const std::filesystem::path& path, const RendererOptions& options)
-    : database_(ooc::Database::open(path)), source_(database_), up_(upAxisOf(database_)) {
+    : database_(ooc::Database::open(path)),
+      source_(database_),
+      up_(hlod::upAxisOf(database_.metadataJson())) {
     restart(options);
     triangles_ = renderer_->runner().root().record->subtreeTriangles;
 }
@@ -110,7 +104,7 @@ const hlod::FrameRecord& Scene::draw(const hlod::Camera& camera, const ViewSetti
                                      bool isMoving) {
     RenderOptions options;
     options.tauPx = tauFor(settings, isMoving);
-    options.worldUp = up_ == hlod::UpAxis::Y ? Vec3f(0, 1, 0) : Vec3f(0, 0, 1);
+    options.worldUp = Vec3f(hlod::upVector(up_));
     setTint(settings);
     renderer_->runner().setPrefetch(settings.runtime.doesPrefetch && !frozen_);
     hlod::Strategy& strategy = strategyFor(settings);

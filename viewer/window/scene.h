@@ -95,7 +95,4 @@ private:
     hlod::FrameRecord record_;
 };
 
-// z unless the database's metadata says y.
-[[nodiscard]] hlod::UpAxis upAxisOf(const ooc::Database& database);
-
 }  // namespace pagoda::viewer

@@ -4,6 +4,7 @@
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <array>
@@ -112,6 +113,18 @@ bool Ui::wantsMouse() const {
 
 bool Ui::wantsKeys() const {
     return ImGui::GetIO().WantTextInput;
+}
+
+void numberRow(const char* name, const std::string& value) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextDisabled("%s", name);
+    ImGui::TableNextColumn();
+    ImGui::TextUnformatted(value.c_str());
+}
+
+std::string lengthText(double modelUnits) {
+    return fmt::format("{:.4g}", modelUnits);
 }
 
 }  // namespace pagoda::viewer

@@ -4,6 +4,8 @@
 
 #include "viewer/window/glfw_window.h"
 
+#include <string>
+
 namespace pagoda::viewer {
 
 class Ui {
@@ -27,5 +29,10 @@ private:
     double buildMs_ = 0.0, drawMs_ = 0.0;
     double beganS_ = 0.0;
 };
+
+// A row of a table of two columns: a name, faint, and what it is.
+void numberRow(const char* name, const std::string& value);
+// Four significant digits.
+[[nodiscard]] std::string lengthText(double modelUnits);
 
 }  // namespace pagoda::viewer

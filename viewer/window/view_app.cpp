@@ -35,10 +35,6 @@ double nowSeconds() {
         .count();
 }
 
-Vec3d upVector(hlod::UpAxis up) {
-    return up == hlod::UpAxis::Y ? Vec3d(0, 1, 0) : Vec3d(0, 0, 1);
-}
-
 nlohmann::json jsonOf(const Vec3d& v) {
     return {v.x, v.y, v.z};
 }
@@ -76,7 +72,7 @@ void ViewApp::open(const std::filesystem::path& path) {
     camera.heightPx = size.y;
     camera = hlod::frameBox(camera, scene_->box(), hlod::viewDirection("iso", scene_->up()),
                             scene_->up());
-    navigation_.emplace(camera, scene_->box(), upVector(scene_->up()));
+    navigation_.emplace(camera, scene_->box(), hlod::upVector(scene_->up()));
     if (!options_.cameraJson.empty()) {
         navigation_->jumpTo(hlod::parseCamera(options_.cameraJson, camera));
         options_.cameraJson.clear();  // of the first model alone

@@ -145,6 +145,14 @@ TEST(Camera, RefusesWhatIsNoCamera) {
     }
 }
 
+TEST(Camera, UpIsWhatTheMetadataSaysWhateverElseStandsThere) {
+    EXPECT_EQ(upAxisOf(R"({"up": "y"})"), UpAxis::Y);
+    for (const char* text :
+         {R"({"up": "z"})", R"({"up": 5})", R"({"up": null})", "{}", "[]", "no"}) {
+        EXPECT_EQ(upAxisOf(text), UpAxis::Z) << text;
+    }
+}
+
 TEST(Camera, PutsTheNearPlaneBeforeTheWholeScene) {
     const Box3d box{{-1, -1, -1}, {1, 1, 1}};
     std::mt19937 random(9);
