@@ -13,9 +13,9 @@
 #
 # centre      plant 12M, interior 5M, lego-show-a; inside; 640x480; latency 0; all strategies;
 #             200 frames, 3 timed passes
-# variations  coh, bool, frustum over 60 frames: outside; 1024x768; paths at 4 times the speed;
-#             query latency 1, 2; prefetch; a disk of 500 MB/s, live (coh); and the scenes city 10M,
-#             torus 10M (with auto), hospital, clinic
+# variations  coh, bool, frustum over 60 frames, one timed pass: outside; 1024x768; paths at 4 times
+#             the speed; query latency 1, 2; and the scenes city 10M, torus 10M (with auto), hospital,
+#             clinic. coh over 200 frames: prefetch; a disk of 500 MB/s, live
 # Scenes are built with 2048 triangles a node, as in the paper of coherent HLOD culling; walks turn by
 # 1 degree a frame. Prefetch is off but where a run is about it: it would read what culling spares.
 # A run whose JSON is there is not repeated: delete it to measure again. Camera paths lie with the
@@ -183,15 +183,15 @@ centre() {
 
 variations() {
     local scene inside outside strategies
+    local brief=(--frames 60 --repeats 1 --truth-every 10)
     for scene in plant interior lego-show-a; do
         outside=$(outside_of $scene)
-        run "$scene-$outside" $scene "$outside" --strategy $few --frames 60
-        run $scene-walk-1024x768 $scene walk --strategy $few --frames 60 --size 1024x768
-        run $scene-walk-speed4 $scene walk --strategy $few --frames 60 --speed 4
-        run $scene-walk-latency1 $scene walk --strategy $few --frames 60 --query-latency 1
-        run $scene-walk-latency2 $scene walk --strategy $few --frames 60 --query-latency 2
-        run $scene-walk-prefetch $scene walk --strategy coh --frames 60 --prefetch on --repeats 0 \
-            --truth-every 0
+        run "$scene-$outside" $scene "$outside" --strategy $few "${brief[@]}"
+        run $scene-walk-1024x768 $scene walk --strategy $few "${brief[@]}" --size 1024x768
+        run $scene-walk-speed4 $scene walk --strategy $few "${brief[@]}" --speed 4
+        run $scene-walk-latency1 $scene walk --strategy $few "${brief[@]}" --query-latency 1
+        run $scene-walk-latency2 $scene walk --strategy $few "${brief[@]}" --query-latency 2
+        run $scene-walk-prefetch $scene walk --strategy coh --prefetch on --repeats 0 --truth-every 0
         run $scene-walk-disk500 $scene walk --strategy coh --prefetch on --repeats 0 \
             --truth-every 0 --no-settled --disk 500MB/s
         run $scene-walk-disk500-off $scene walk --strategy coh --repeats 0 --truth-every 0 \
@@ -202,8 +202,8 @@ variations() {
         outside=$(outside_of $scene)
         strategies=$few
         [ $scene != torus ] || [[ ,$all, != *,auto,* ]] || strategies=$few,auto
-        run "$scene-$inside" $scene "$inside" --strategy "$strategies" --frames 60
-        run "$scene-$outside" $scene "$outside" --strategy "$strategies" --frames 60
+        run "$scene-$inside" $scene "$inside" --strategy "$strategies" "${brief[@]}"
+        run "$scene-$outside" $scene "$outside" --strategy "$strategies" "${brief[@]}"
     done
 }
 
