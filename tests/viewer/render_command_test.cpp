@@ -151,8 +151,8 @@ TEST_F(RenderCommandTest, TakesACameraFromTheLineOrAFile) {
     EXPECT_TRUE(contentOf(folder_ / "a.png") == contentOf(folder_ / "b.png"));
 }
 
-TEST_F(RenderCommandTest, ThePyramidsPlaceChangesNoByteOfThePicture) {
-    const std::string f = folder_, common = " --strategy hzb --size 200x100";
+TEST_F(RenderCommandTest, ThePyramidsPlaceAndWhatIsPushedChangeNoByteOfTheFullModelsPicture) {
+    const std::string f = folder_, common = " --strategy hzb --tau 0 --size 200x100";
     ASSERT_EQ(run("-o " + f + "/a.png --pyramid cpu" + common).exitCode, 0);
     ASSERT_EQ(run("-o " + f + "/b.png --pyramid gpu --push-occluders on" + common).exitCode, 0);
     EXPECT_TRUE(contentOf(folder_ / "a.png") == contentOf(folder_ / "b.png"));
