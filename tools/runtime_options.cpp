@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace pagoda::tools {
@@ -38,7 +39,28 @@ viewer::RendererOptions RuntimeOptions::rendererOptions() const {
     options.queryLatencyFrames = queryLatencyFrames;
     options.doesPrefetch = prefetch == "on";
     options.disk = cache::parseDiskProfile(disk);
+    if (pyramid == "cpu") options.pyramid.place = viewer::PyramidPlace::Cpu;
+    if (pyramid == "gpu") options.pyramid.place = viewer::PyramidPlace::Gpu;
+    options.pyramid.pushesOccluders = pushOccluders == "on";
     return options;
+}
+
+void RuntimeOptions::checkStrategies(std::span<const std::string> strategies) const {
+    if (pushOccluders != "on") return;
+    std::string able;
+    for (const hlod::StrategyRow& row : hlod::strategies()) {
+        if (row.hidesByPyramid) able += (able.empty() ? "" : " or ") + std::string(row.name);
+    }
+    for (const std::string& name : strategies) {
+        const auto rows = hlod::strategies();
+        const auto row = std::find_if(rows.begin(), rows.end(),
+                                      [&](const auto& each) { return each.name == name; });
+        if (row == rows.end() || row->hidesByPyramid) continue;
+        throw CLI::ValidationError("--push-occluders", "strategy " + name +
+                                                           " has no depth pyramid whose depths "
+                                                           "could be pushed; use --strategy " +
+                                                           able);
+    }
 }
 
 std::vector<std::string> strategyNames() {
@@ -73,6 +95,19 @@ void addRuntimeOptions(CLI::App& command, RuntimeOptions& options) {
     command
         .add_option("--prefetch", options.prefetch,
                     "Read ahead what the camera's motion foretells, as far as that pays: on or off")
+        ->check(CLI::IsMember({"on", "off"}))
+        ->capture_default_str();
+    command
+        .add_option("--pyramid", options.pyramid,
+                    "Where hzb and late test boxes against depths: cpu (which reads them back), "
+                    "gpu, or auto (cpu on a software renderer)")
+        ->check(CLI::IsMember({"cpu", "gpu", "auto"}))
+        ->capture_default_str();
+    command
+        .add_option(
+            "--push-occluders", options.pushOccluders,
+            "Push what hides back by its node's error, so that the full model hides it too: "
+            "on or off (hzb and late only)")
         ->check(CLI::IsMember({"on", "off"}))
         ->capture_default_str();
     command

@@ -6,6 +6,7 @@
 #include "viewer/renderer.h"
 
 #include <array>
+#include <span>
 #include <string>
 
 namespace CLI {
@@ -23,10 +24,13 @@ struct RuntimeOptions {
     std::string hostBudget = "256MiB", gpuBudget = "1GiB", uploadBudget;
     std::string disk = "as-is";
     std::string prefetch = "on";
+    std::string pyramid = "auto", pushOccluders = "off";
 
     // All throw CLI::ValidationError or Error for what cannot be parsed.
     [[nodiscard]] hlod::StrategyOptions strategyOptions() const;
     [[nodiscard]] viewer::RendererOptions rendererOptions() const;
+    // Refuses what the options cannot do for one of these.
+    void checkStrategies(std::span<const std::string> strategies) const;
 };
 
 // Names of the strategies, for --help and checks.

@@ -57,6 +57,9 @@ FrameTarget::FrameTarget(int widthPx, int heightPx) : widthPx_(widthPx), heightP
     nodeOrdinals_ = makeTexture2d(GL_R32UI, widthPx, heightPx);
     triangles_ = makeTexture2d(GL_R32UI, widthPx, heightPx);
     depth_ = makeTexture2d(GL_DEPTH_COMPONENT32F, widthPx, heightPx);
+    // Integers are not interpolated: a shader that fetches them gets nothing else.
+    glTextureParameteri(nodeOrdinals_.id(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTextureParameteri(nodeOrdinals_.id(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     throwOnGlError("the picture");
     framebuffer_ = makeFramebuffer();
     const GlId id = framebuffer_.id();
@@ -138,6 +141,13 @@ void FrameTarget::readDepths(std::vector<float>& depths) const {
     depths.resize(static_cast<size_t>(widthPx_) * static_cast<size_t>(heightPx_));
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadPixels(0, 0, widthPx_, heightPx_, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
+}
+
+void FrameTarget::readNodeOrdinals(std::vector<uint32_t>& ordinals) const {
+    ordinals.resize(static_cast<size_t>(widthPx_) * static_cast<size_t>(heightPx_));
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glGetTextureImage(nodeOrdinals_.id(), 0, GL_RED_INTEGER, GL_UNSIGNED_INT,
+                      static_cast<GLsizei>(ordinals.size() * sizeof(uint32_t)), ordinals.data());
 }
 
 PixelSample FrameTarget::sample(int xPx, int yPx) const {

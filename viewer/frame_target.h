@@ -34,6 +34,11 @@ public:
 
     // The depths alone, reversed as they are stored, rows from bottom to top. Waits for the GPU.
     void readDepths(std::vector<float>& depths) const;
+    // The node ordinals alone, in the same order.
+    void readNodeOrdinals(std::vector<uint32_t>& ordinals) const;
+    // For shaders, between draws: D32F, and R32UI.
+    [[nodiscard]] GlId depthTexture() const noexcept { return depth_.id(); }
+    [[nodiscard]] GlId nodeOrdinalTexture() const noexcept { return nodeOrdinals_.id(); }
 
     // Of the last frame, y from the top. Outside the picture: nothing.
     [[nodiscard]] PixelSample sample(int xPx, int yPx) const;

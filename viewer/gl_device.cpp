@@ -1,6 +1,8 @@
 #include "viewer/gl_device.h"
 
+#include "hlod/raster/pushed_depths.h"
 #include "viewer/gl_context.h"
+#include "viewer/gpu_depth_tests.h"
 #include "viewer/stopwatch.h"
 
 #include <epoxy/gl.h>
@@ -31,12 +33,21 @@ std::vector<hlod::Node> translucentBackToFront(std::span<const hlod::Node> nodes
     return order;
 }
 
-GlDevice::GlDevice(const ooc::Lattice& lattice, uint64_t gpuBudgetBytes)
+GlDevice::GlDevice(const ooc::Lattice& lattice, uint64_t gpuBudgetBytes,
+                   const PyramidOptions& pyramid)
     : lattice_(lattice),
       store_(gpuBudgetBytes),
       drawer_(store_),
       queries_([this] { flush(); }, [this] { restoreState(); }, !isSoftwareRenderer()),
-      depthTests_([this] { flush(); }) {
+      pushesOccluders_(pyramid.pushesOccluders) {
+    const bool isOnCpu = pyramid.place == PyramidPlace::Auto ? isSoftwareRenderer()
+                                                             : pyramid.place == PyramidPlace::Cpu;
+    if (isOnCpu) {
+        depthTests_ = std::make_unique<CpuDepthTests>([this] { flush(); });
+    } else {
+        depthTests_ =
+            std::make_unique<GpuDepthTests>([this] { flush(); }, [this] { restoreState(); });
+    }
 }
 
 void GlDevice::setLook(const Background& background, const Vec3f& worldUp) {
@@ -55,6 +66,7 @@ void GlDevice::beginFrame(const hlod::View& view) {
     eyeModel_ = view.eye();
     nearModelUnits_ = view.nearModelUnits();
     ordinals_.clear();
+    pushes_.assign(1, 0.0f);
     gathered_.clear();
     drawnNodes_ = drawnTriangles_ = 0;
     drawMs_ = 0.0;
@@ -64,7 +76,7 @@ void GlDevice::beginFrame(const hlod::View& view) {
     latticeView_ = makeLatticeView(view, lattice_);
     program_.setView(latticeView_, worldUp_);
     queries_.beginFrame(view, latticeView_, lattice_);
-    depthTests_.beginFrame(view, *target_);
+    depthTests_->beginFrame(view, *target_, pushesOccluders_ ? &pushes_ : nullptr);
     target_->beginOpaque();
     drawer_.bind(program_, latticeView_);
     drawMs_ += watch.lapMs();
@@ -72,6 +84,9 @@ void GlDevice::beginFrame(const hlod::View& view) {
 
 uint32_t GlDevice::ordinalOf(const hlod::Node& node) {
     ordinals_.push_back(node.record->id);
+    if (pushesOccluders_) {
+        pushes_.push_back(hlod::depthPush(node.record->errorModelUnits, nearModelUnits_));
+    }
     return static_cast<uint32_t>(ordinals_.size());
 }
 
@@ -140,7 +155,7 @@ void GlDevice::drawTranslucent(std::span<const hlod::Node> order, hlod::FrameRec
 }
 
 void GlDevice::endFrame(const hlod::FrameCut& cut, hlod::FrameRecord& record) {
-    record.queryMs = queries_.msThisFrame() + depthTests_.msThisFrame();
+    record.queryMs = queries_.msThisFrame() + depthTests_->msThisFrame();
     record.drawMs = drawMs_;  // what was drawn while the strategy went on; its caller adds the rest
     finishOpaque(record);
     drawZippers(cut, record);

@@ -24,7 +24,8 @@ using NodeTint = std::function<glm::u8vec4(const hlod::Node&, const hlod::View&)
 class GlDevice final : public hlod::Device {
 public:
     // `lattice` is the scene's.
-    GlDevice(const ooc::Lattice& lattice, uint64_t gpuBudgetBytes);
+    GlDevice(const ooc::Lattice& lattice, uint64_t gpuBudgetBytes,
+             const PyramidOptions& pyramid = {});
 
     [[nodiscard]] MeshStore& store() noexcept { return store_; }
     // Holds from the next frame on.
@@ -35,7 +36,7 @@ public:
     void beginFrame(const hlod::View& view) override;
     void draw(const hlod::Node& node) override;
     [[nodiscard]] hlod::CountingVisibility* counting() override { return &queries_; }
-    [[nodiscard]] hlod::PyramidVisibility* pyramid() override { return &depthTests_; }
+    [[nodiscard]] hlod::PyramidVisibility* pyramid() override { return depthTests_.get(); }
     void endFrame(const hlod::FrameCut& cut, hlod::FrameRecord& record) override;
 
     // For who draws a picture in several batches: draws what was gathered, waits for it, and
@@ -63,7 +64,8 @@ private:
     NodeProgram program_;
     NodeDrawer drawer_;
     BoxQueries queries_;
-    DepthTests depthTests_;
+    bool pushesOccluders_;
+    std::unique_ptr<DepthTests> depthTests_;
     std::unique_ptr<FrameTarget> target_;
     Background background_;
     Vec3f worldUp_{0, 1, 0};
@@ -74,6 +76,7 @@ private:
     Vec3d eyeModel_{0.0};
     double nearModelUnits_ = 1.0;
     std::vector<ooc::NodeId> ordinals_;  // node of ordinal i + 1
+    std::vector<float> pushes_;          // of ordinal i, where occluders are pushed
     std::vector<DrawItem> gathered_;
     uint64_t drawnNodes_ = 0, drawnTriangles_ = 0;
     double drawMs_ = 0.0;

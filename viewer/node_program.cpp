@@ -118,25 +118,13 @@ GlId compile(GLenum stage, const char* source) {
     throw Error("", "", std::string("the driver refuses a shader: ") + log, "please report it");
 }
 
-void setVec3(GlId program, Location location, const Vec3f& value) {
-    glProgramUniform3f(program, location, value.x, value.y, value.z);
+void attach(const GlProgram& program, GLenum stage, const char* source) {
+    const GlId shader = compile(stage, source);
+    glAttachShader(program.id(), shader);
+    glDeleteShader(shader);  // freed with the program
 }
 
-}  // namespace
-
-GlProgram linkProgram(const char* vertexSource, const char* fragmentSource,
-                      std::span<const char* const> captured) {
-    GlProgram program(glCreateProgram());
-    const GlId vertex = compile(GL_VERTEX_SHADER, vertexSource);
-    glAttachShader(program.id(), vertex);
-    glDeleteShader(vertex);  // freed with the program
-    const GlId fragment = compile(GL_FRAGMENT_SHADER, fragmentSource);
-    glAttachShader(program.id(), fragment);
-    glDeleteShader(fragment);
-    if (!captured.empty()) {
-        glTransformFeedbackVaryings(program.id(), static_cast<GLsizei>(captured.size()),
-                                    captured.data(), GL_INTERLEAVED_ATTRIBS);
-    }
+void link(const GlProgram& program) {
     glLinkProgram(program.id());
     GLint isLinked = 0;
     glGetProgramiv(program.id(), GL_LINK_STATUS, &isLinked);
@@ -146,6 +134,31 @@ GlProgram linkProgram(const char* vertexSource, const char* fragmentSource,
         throw Error("", "", std::string("the driver refuses a program: ") + log,
                     "please report it");
     }
+}
+
+void setVec3(GlId program, Location location, const Vec3f& value) {
+    glProgramUniform3f(program, location, value.x, value.y, value.z);
+}
+
+}  // namespace
+
+GlProgram linkProgram(const char* vertexSource, const char* fragmentSource,
+                      std::span<const char* const> captured) {
+    GlProgram program(glCreateProgram());
+    attach(program, GL_VERTEX_SHADER, vertexSource);
+    attach(program, GL_FRAGMENT_SHADER, fragmentSource);
+    if (!captured.empty()) {
+        glTransformFeedbackVaryings(program.id(), static_cast<GLsizei>(captured.size()),
+                                    captured.data(), GL_INTERLEAVED_ATTRIBS);
+    }
+    link(program);
+    return program;
+}
+
+GlProgram linkComputeProgram(const char* source) {
+    GlProgram program(glCreateProgram());
+    attach(program, GL_COMPUTE_SHADER, source);
+    link(program);
     return program;
 }
 

@@ -46,6 +46,7 @@ private:
 // Compiles and links; throws Error with the driver's log (a fault of ours).
 [[nodiscard]] GlProgram linkProgram(const char* vertexSource, const char* fragmentSource,
                                     std::span<const char* const> captured = {});
+[[nodiscard]] GlProgram linkComputeProgram(const char* source);
 
 // A vertex array for GpuVertex and DrawInstance: vertices at binding 0, instances at binding 1.
 [[nodiscard]] GlVertexArray makeNodeVertexArray();

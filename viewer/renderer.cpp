@@ -39,7 +39,7 @@ Renderer::Renderer(const ooc::Lattice& lattice, const cache::PageSource& source,
                    const RendererOptions& options)
     : clock_(options.clock != nullptr ? *options.clock : wallClock_),
       source_(source),
-      device_(lattice, gpuBytes(options)),
+      device_(lattice, gpuBytes(options), options.pyramid),
       ownLoads_(makeLoads(source, options, clock_)),
       streaming_(std::vector<cache::SceneDatabase>{{lattice, &source}},
                  ownLoads_ ? *ownLoads_ : *options.loads, device_.store(), clock_,

@@ -28,6 +28,7 @@ struct RendererOptions {
     uint64_t gpuBytes = uint64_t{1} << 30;     // at least 1 MiB
     uint64_t uploadBytesPerFrame = 0;          // 0: no bound
     uint32_t queryLatencyFrames = 0;
+    PyramidOptions pyramid{};
     bool doesPrefetch = false;      // along the camera's motion
     cache::DiskProfile disk{};      // simulated in front of the real one
     cache::Clock* clock = nullptr;  // outlives the renderer; null: the wall's

@@ -4,9 +4,8 @@
 // of a hidden box costs one comparison a block. One thread.
 #pragma once
 
-#include "hlod/view/camera.h"
+#include "hlod/raster/box_faces.h"
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,24 +19,16 @@ public:
     // `depths` outlives the calls below.
     void setDepths(const View& view, std::span<const float> depths);
 
-    // Pixels whose centres the box covers with a front face that is not farther than the depth
-    // there. The box is grown as GL queries grow it: by half a pixel and 1e-5 of its distance, so
-    // that it never hides behind its own content. It does not cross the near plane (asserted).
+    // Pixels whose centres the grown box (box_faces.h) covers with a front face that is not farther
+    // than the depth there; all pixels when the eye is in it.
     [[nodiscard]] uint64_t visiblePixels(const Box3d& boxModel) const;
+    // The same of each, in `pixels`.
+    void visiblePixels(std::span<const Box3d> boxesModel, std::span<uint64_t> pixels) const;
 
 private:
-    struct Quad {
-        std::array<Vec3d, 4> corners;  // (x w, y w, w): x and y in pixels from the bottom left
-        double depth[3];               // reversed, of pixel (x, y): [0] x + [1] y + [2]
-    };
-    struct Rect {
-        int x0, y0, x1, y1;  // inclusive
-    };
-    [[nodiscard]] Rect rectOf(const Quad& quad) const;
-    [[nodiscard]] uint64_t visiblePixels(const Quad& quad) const;
+    [[nodiscard]] uint64_t visiblePixels(const BoxFace& face) const;
 
-    Vec3d eye_{0.0}, right_{0.0}, up_{0.0}, forward_{0.0};
-    double tanX_ = 1, tanY_ = 1, near_ = 1;
+    BoxFaces faces_;
     int width_ = 0, height_ = 0, blocksX_ = 0, blocksY_ = 0;
     std::span<const float> depths_;
     std::vector<float> farthest_;  // least reversed depth of each block

@@ -65,8 +65,8 @@ private:
         explicit Pyramid(const TriangleRaster& drawn) : drawn_(drawn) {}
         void beginFrame(const View& view) { view_ = &view; }
         void build() override;
-        [[nodiscard]] uint64_t visiblePixels(const Box3d& boxModel) override {
-            return boxes_.visiblePixels(boxModel);
+        void visiblePixels(std::span<const Box3d> boxesModel, std::span<uint64_t> pixels) override {
+            boxes_.visiblePixels(boxesModel, pixels);
         }
 
     private:

@@ -6,6 +6,7 @@ void PyramidAnswers::beginFrame(PyramidVisibility& pyramid, FrameRecord& record)
     pyramid_ = &pyramid;
     record_ = &record;
     boxes_.clear();
+    answers_.clear();
     isBuilt_ = false;
 }
 
@@ -16,9 +17,17 @@ QueryTicket PyramidAnswers::query(const QueryShape& shape) {
 }
 
 uint64_t PyramidAnswers::wait(QueryTicket ticket) {
+    if (ticket.value >= answers_.size()) testAsked();
+    return answers_[ticket.value];
+}
+
+void PyramidAnswers::testAsked() {
     if (!isBuilt_) pyramid_->build();
     isBuilt_ = true;
-    return pyramid_->visiblePixels(boxes_[ticket.value]);
+    const size_t answered = answers_.size();
+    answers_.resize(boxes_.size());
+    pyramid_->visiblePixels(std::span(boxes_).subspan(answered),
+                            std::span(answers_).subspan(answered));
 }
 
 }  // namespace pagoda::hlod

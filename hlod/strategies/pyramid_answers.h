@@ -9,7 +9,9 @@
 namespace pagoda::hlod {
 
 // Answers from a depth pyramid, which is built when the first one is waited for: every box of the
-// frame is tested against what was drawn by then.
+// frame is tested against what was drawn by then. Whenever one is waited for that is not there, all
+// that were asked by then are tested at once; since a walk goes on until nothing is left to do but
+// wait, that is about once for each level of the tree.
 class PyramidAnswers final : public CountingVisibility {
 public:
     void beginFrame(PyramidVisibility& pyramid, FrameRecord& record);
@@ -18,9 +20,12 @@ public:
     [[nodiscard]] uint64_t wait(QueryTicket ticket) override;
 
 private:
+    void testAsked();
+
     PyramidVisibility* pyramid_ = nullptr;
     FrameRecord* record_ = nullptr;
-    std::vector<Box3d> boxes_;
+    std::vector<Box3d> boxes_;       // by ticket
+    std::vector<uint64_t> answers_;  // of the first boxes: those that were tested
     bool isBuilt_ = false;
 };
 

@@ -11,10 +11,10 @@ constexpr std::array kStrategies = {
     StrategyRow{"sw", "hierarchical stop-and-wait, VMSSE: the ideal set", &makeSwStrategy},
     StrategyRow{"simp", "VMSSE, predicted from the last answer in order", &makeSimpStrategy},
     StrategyRow{"coh", "coherent HLOD culling: refine, stop or delay", &makeCohStrategy},
-    StrategyRow{"hzb", "as coh, boxes tested against a depth pyramid, no queries",
-                &makeHzbStrategy},
+    StrategyRow{"hzb", "as coh, boxes tested against a depth pyramid, no queries", &makeHzbStrategy,
+                true},
     StrategyRow{"late", "as coh for late answers: hidden by the pyramid, errors by old queries",
-                &makeLateStrategy},
+                &makeLateStrategy, true},
     StrategyRow{"auto", "whichever of coh, hzb and frustum pays here", &makeAutoStrategy},
 };
 

@@ -32,6 +32,7 @@ struct StrategyRow {
     std::string_view name;
     std::string_view what;
     std::unique_ptr<Strategy> (*make)(const StrategyOptions& options);
+    bool hidesByPyramid = false;  // nothing is hidden by any other answer
 };
 
 [[nodiscard]] std::span<const StrategyRow> strategies();

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <variant>
 
 namespace pagoda::hlod {
@@ -42,15 +43,16 @@ public:
     [[nodiscard]] virtual bool isPollFree() const { return false; }
 };
 
-// Tests boxes against a pyramid of the depths drawn so far, at once.
+// Tests boxes against a pyramid of the depths drawn so far.
 class PyramidVisibility {
 public:
     virtual ~PyramidVisibility() = default;
     // Takes the depths of all that was drawn so far.
     virtual void build() = 0;
-    // 0 only when the box is hidden by what was drawn before build(); else an estimate, from above,
-    // of its visible pixels.
-    [[nodiscard]] virtual uint64_t visiblePixels(const Box3d& boxModel) = 0;
+    // For each box, none of which crosses the near plane: 0 only when it is hidden by what was
+    // drawn before build(); else an estimate, from above, of its visible pixels. `pixels` has as
+    // many places as there are boxes. A call may wait for the device: ask many at once.
+    virtual void visiblePixels(std::span<const Box3d> boxesModel, std::span<uint64_t> pixels) = 0;
 };
 
 // Pixels [minX, maxX) x [minY, maxY), from the top left.

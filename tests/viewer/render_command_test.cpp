@@ -151,12 +151,24 @@ TEST_F(RenderCommandTest, TakesACameraFromTheLineOrAFile) {
     EXPECT_TRUE(contentOf(folder_ / "a.png") == contentOf(folder_ / "b.png"));
 }
 
+TEST_F(RenderCommandTest, ThePyramidsPlaceAndWhatIsPushedChangeNoByteOfTheFullModelsPicture) {
+    const std::string f = folder_, common = " --strategy hzb --tau 0 --size 200x100";
+    ASSERT_EQ(run("-o " + f + "/a.png --pyramid cpu" + common).exitCode, 0);
+    ASSERT_EQ(run("-o " + f + "/b.png --pyramid gpu --push-occluders on" + common).exitCode, 0);
+    EXPECT_TRUE(contentOf(folder_ / "a.png") == contentOf(folder_ / "b.png"));
+}
+
 TEST_F(RenderCommandTest, RefusesWhatMakesNoSense) {
     const std::string o = "-o " + folder_.string() + "/a.png ";
-    for (const char* wrong : {"--size 0x5", "--size big", "--strategy none", "--background blue",
-                              "--tau -1", "--fov 0"}) {
+    for (const char* wrong :
+         {"--size 0x5", "--size big", "--strategy none", "--background blue", "--tau -1", "--fov 0",
+          "--pyramid disk", "--strategy coh --push-occluders on",
+          "--strategy auto --push-occluders on"}) {
         EXPECT_EQ(run(o + wrong).exitCode, 2) << wrong;
     }
+    const std::string refusal = run(o + "--strategy bool --push-occluders on").err;
+    EXPECT_NE(refusal.find("strategy bool has no depth pyramid"), std::string::npos) << refusal;
+    EXPECT_NE(refusal.find("--strategy hzb or late"), std::string::npos) << refusal;
     for (const char* wrong :
          {"--view above", "--camera '{\"eye\":1}'", "--camera missing.json", "--size 99999x9"}) {
         EXPECT_EQ(run(o + wrong).exitCode, 1) << wrong;

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 namespace pagoda::viewer {
 namespace {
@@ -83,34 +84,50 @@ TEST_F(StrategiesTest, BoolsSettledPictureIsTheCutAtTauBitForBit) {
     }
 }
 
-TEST_F(StrategiesTest, NoPixelIsWrongAtAnyLatency) {
+// Pixels of a walk around the scene that are not those of the strategy's own cut without culling:
+// none.
+void expectNoWrongPixel(const char* name, const RendererOptions& options) {
     MemoryScene scene = hiddenSpheres();
-    Renderer truth(scene.lattice, scene, {});
+    Renderer truth(scene.lattice, scene, {}), renderer(scene.lattice, scene, options);
+    const auto strategy = hlod::makeStrategy(name);
+    size_t wrong = 0, covered = 0, hidden = 0;
+    for (int step = 0; step < kSteps; ++step) {
+        hlod::FrameRecord record = renderer.renderLive(cameraAt(step), *strategy, {});
+        const Picture picture = renderer.read(record);
+        hlod::ReplayStrategy replay(renderer.runner().cut());
+        hlod::FrameRecord truthRecord = truth.render(cameraAt(step), replay, {});
+        const Picture expected = truth.read(truthRecord);
+        covered += record.coveredPixels;
+        hidden += record.hiddenNodes;
+        for (size_t i = 0; i < picture.pixelCount(); ++i) {
+            const bool isOverdrawn =
+                replay.overdrawn().contains(cache::PageId{0, nodeAt(picture, i)});
+            wrong += !isSame(picture, expected, i) && !isOverdrawn &&
+                     picture.depthsModelUnits[i] != expected.depthsModelUnits[i];
+        }
+    }
+    EXPECT_EQ(wrong, 0u);
+    EXPECT_GT(covered, kSteps * 5000u);
+    EXPECT_GT(hidden, size_t{kSteps});
+}
+
+TEST_F(StrategiesTest, NoPixelIsWrongAtAnyLatency) {
     for (const char* name : {"bool", "sw", "coh", "hzb", "late"}) {
         for (const uint32_t latency : {0u, 1u, 2u, 4u}) {
-            RendererOptions options;
-            options.queryLatencyFrames = latency;
-            Renderer renderer(scene.lattice, scene, options);
-            const auto strategy = hlod::makeStrategy(name);
-            size_t wrong = 0, covered = 0, hidden = 0;
-            for (int step = 0; step < kSteps; ++step) {
-                hlod::FrameRecord record = renderer.renderLive(cameraAt(step), *strategy, {});
-                const Picture picture = renderer.read(record);
-                hlod::ReplayStrategy replay(renderer.runner().cut());
-                hlod::FrameRecord truthRecord = truth.render(cameraAt(step), replay, {});
-                const Picture expected = truth.read(truthRecord);
-                covered += record.coveredPixels;
-                hidden += record.hiddenNodes;
-                for (size_t i = 0; i < picture.pixelCount(); ++i) {
-                    const bool isOverdrawn =
-                        replay.overdrawn().contains(cache::PageId{0, nodeAt(picture, i)});
-                    wrong += !isSame(picture, expected, i) && !isOverdrawn &&
-                             picture.depthsModelUnits[i] != expected.depthsModelUnits[i];
-                }
+            SCOPED_TRACE(name + (" at latency " + std::to_string(latency)));
+            expectNoWrongPixel(name, {.queryLatencyFrames = latency});
+        }
+    }
+}
+
+TEST_F(StrategiesTest, NoPixelIsWrongWhereverThePyramidIsAndWhateverIsPushed) {
+    for (const char* name : {"hzb", "late"}) {
+        for (const PyramidPlace place : {PyramidPlace::Cpu, PyramidPlace::Gpu}) {
+            for (const bool pushes : {false, true}) {
+                SCOPED_TRACE(std::string(name) + (place == PyramidPlace::Gpu ? " gpu" : " cpu") +
+                             (pushes ? " pushed" : ""));
+                expectNoWrongPixel(name, {.pyramid = {place, pushes}});
             }
-            EXPECT_EQ(wrong, 0u) << name << " at latency " << latency;
-            EXPECT_GT(covered, kSteps * 5000u);
-            EXPECT_GT(hidden, size_t{kSteps}) << name;
         }
     }
 }

@@ -116,6 +116,8 @@ std::string benchToJson(const BenchPlan& plan, const std::vector<BenchRun>& runs
     json["settings"].update({{"host_budget", plan.runtime.hostBudget},
                              {"gpu_budget", plan.runtime.gpuBudget},
                              {"upload_budget", plan.runtime.uploadBudget},
+                             {"pyramid", plan.runtime.pyramid},
+                             {"push_occluders", plan.runtime.pushOccluders == "on"},
                              {"disk", plan.runtime.disk},
                              {"speed", plan.speed},
                              {"repeats", plan.repeats},

@@ -127,6 +127,7 @@ void bench(Arguments& arguments, Session& session) {
     for (const std::string* file : {&arguments.json, &arguments.csv, &arguments.html}) {
         checkReportFile(*file);
     }
+    arguments.plan.runtime.checkStrategies(arguments.strategies);
     addConfigurations(arguments);
     BenchPlan& plan = arguments.plan;
     plan.database = arguments.database;

@@ -114,6 +114,7 @@ void addDatabaseFaults(const ooc::Database& database, hlod::FrameRecord& record)
 }
 
 void render(const Arguments& arguments, Session& session) {
+    arguments.runtime.checkStrategies(std::span(&arguments.runtime.strategy, 1));
     const ooc::Database database = ooc::Database::open(arguments.database);
     const viewer::GlContext context = viewer::GlContext::headless();
     cache::DatabaseSource source(database);

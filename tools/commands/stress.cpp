@@ -51,6 +51,7 @@ void fillPlan(Arguments& arguments) {
     const PictureSize size = parsePictureSize(arguments.size);
     plan.widthPx = size.widthPx;
     plan.heightPx = size.heightPx;
+    plan.runtime.checkStrategies(std::span(&plan.runtime.strategy, 1));
     static_cast<void>(plan.runtime.rendererOptions());  // throws for budgets that are none
     for (const std::string* file : {&arguments.json, &arguments.csv, &arguments.html}) {
         checkReportFile(*file);

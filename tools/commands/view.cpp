@@ -45,6 +45,7 @@ std::string cameraText(const std::string& camera) {
 }
 
 void view(Arguments& arguments, Session& session) {
+    arguments.runtime.checkStrategies(std::span(&arguments.runtime.strategy, 1));
     viewer::ViewOptions& options = arguments.view;
     if (!arguments.size.empty()) parseSize(arguments.size, options);
     options.cameraJson = cameraText(arguments.camera);

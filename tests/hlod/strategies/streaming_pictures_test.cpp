@@ -125,8 +125,9 @@ public:
         return note(asked_[ticket.value], counting->wait(ticket));
     }
     void build() override { depths->build(); }
-    uint64_t visiblePixels(const Box3d& box) override {
-        return note(box, depths->visiblePixels(box));
+    void visiblePixels(std::span<const Box3d> boxes, std::span<uint64_t> pixels) override {
+        depths->visiblePixels(boxes, pixels);
+        for (size_t i = 0; i < boxes.size(); ++i) note(boxes[i], pixels[i]);
     }
     CountingVisibility* counting = nullptr;
     PyramidVisibility* depths = nullptr;
