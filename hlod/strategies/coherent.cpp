@@ -36,52 +36,68 @@ void CoherentStrategy::traverse(FrameContext& frame) {
     if (!root) return;
     memory_.fit(frame.tree);
     takeLateAnswers();
+    familyOf_ = kNoParent;
     push(*root, kNoParent, 0);
     const bool doesPoll = counting_ != nullptr && counting_->isPollFree();
     while (!queue_.empty() || !pending_.empty()) {
-        while (!pending_.empty()) {
-            const uint32_t oldest = pending_.front();
-            std::optional<uint64_t> visiblePx;
-            if (doesPoll) visiblePx = counting_->poll(visits_[oldest].ticket);
-            if (!visiblePx) {
-                if (!queue_.empty()) break;
-                ++frame.record.waits;
-                visiblePx = counting_->wait(visits_[oldest].ticket);
-            }
-            pending_.pop_front();
-            answer(oldest, *visiblePx);
-        }
+        takeAnswers(doesPoll);
         if (!queue_.empty()) visit(pop());
     }
 }
 
-// Is `a` taken after `b`? Nearest first; ties by id.
-bool CoherentStrategy::isLater(uint32_t a, uint32_t b) const {
-    const Visit &p = visits_[a], &q = visits_[b];
-    return p.distance != q.distance ? p.distance > q.distance : p.node.page() > q.node.page();
+// In order, as far as they have come; waits for them when nothing is left to visit.
+void CoherentStrategy::takeAnswers(bool doesPoll) {
+    while (!pending_.empty()) {
+        const Asked oldest = pending_.front();
+        std::optional<uint64_t> visiblePx;
+        if (doesPoll) visiblePx = counting_->poll(oldest.ticket);
+        if (!visiblePx) {
+            if (!queue_.empty()) return;
+            ++frame_->record.waits;
+            visiblePx = counting_->wait(oldest.ticket);
+        }
+        pending_.pop_front();
+        answer(oldest.visit, *visiblePx);
+    }
 }
 
+// Is `a` taken after `b`? Nearest first; ties by id.
+bool CoherentStrategy::isLater(const Queued& a, const Queued& b) const {
+    if (a.distance != b.distance) return a.distance > b.distance;
+    return visits_[a.visit].node.page() > visits_[b.visit].node.page();
+}
+
+// A family lies side by side in memory: what its visits need of it is taken here, once.
 void CoherentStrategy::push(const Node& node, uint32_t parent, uint32_t probeLevel) {
-    Visit visit;
+    const View& view = frame_->view;
+    const auto index = static_cast<uint32_t>(visits_.size());
+    Visit& visit = visits_.emplace_back();
     visit.node = node;
     visit.parent = parent;
-    visit.distance = static_cast<float>(frame_->view.distanceTo(*node.boxModel));
     visit.probeLevel = probeLevel;
-    if (parent != kNoParent && frame_->tauPx > 0.0) {
-        visit.excess = visits_[parent].ssePx / frame_->tauPx;
+    if (view.intersectsFrustum(*node.boxModel)) {
+        visit.memory = &memory_[node];
+        visit.ssePx = view.ssePx(node.record->errorModelUnits, *node.boxModel);
     }
-    visits_.push_back(visit);
-    queue_.push_back(static_cast<uint32_t>(visits_.size() - 1));
+    queue_.push_back({static_cast<float>(view.distanceTo(*node.boxModel)), index});
     std::push_heap(queue_.begin(), queue_.end(),
-                   [this](uint32_t a, uint32_t b) { return isLater(a, b); });
+                   [this](const Queued& a, const Queued& b) { return isLater(a, b); });
 }
 
 uint32_t CoherentStrategy::pop() {
     std::pop_heap(queue_.begin(), queue_.end(),
-                  [this](uint32_t a, uint32_t b) { return isLater(a, b); });
-    const uint32_t index = queue_.back();
+                  [this](const Queued& a, const Queued& b) { return isLater(a, b); });
+    const uint32_t index = queue_.back().visit;
     queue_.pop_back();
     return index;
+}
+
+const NodeRange& CoherentStrategy::children(uint32_t index, double priority) {
+    if (familyOf_ != index || family_.empty()) {
+        family_ = frame_->tree.children(visits_[index].node, priority);
+        familyOf_ = index;
+    }
+    return family_;
 }
 
 bool CoherentStrategy::isFine(const Visit& visit, double bias) const {
@@ -98,20 +114,23 @@ double CoherentStrategy::biasOf(uint64_t visiblePx, double outlinePx) const {
 }
 
 double CoherentStrategy::priorityOf(const Visit& visit) const {
-    return requestPriority(static_cast<double>(visit.visiblePx), visit.excess);
+    // Of the parent's error: how badly the node is missed.
+    const bool hasExcess = visit.parent != kNoParent && frame_->tauPx > 0.0;
+    const double excess = hasExcess ? visits_[visit.parent].ssePx / frame_->tauPx : 1.0;
+    return requestPriority(static_cast<double>(visit.visiblePx), excess);
 }
 
 void CoherentStrategy::visit(uint32_t index) {
     Visit& visit = visits_[index];
     ++frame_->record.visitedNodes;
-    if (!frame_->view.intersectsFrustum(*visit.node.boxModel)) {
+    if (visit.memory == nullptr) {
         ++frame_->record.culledNodes;
         return;
     }
-    visit.ssePx = frame_->view.ssePx(visit.node.record->errorModelUnits, *visit.node.boxModel);
-    Memory& memory = memory_[visit.node];
-    visit.prediction = predict(visit, memory);
-    memory.isVisible = false;
+    visit.prediction = predict(index);
+    Memory& memory = *visit.memory;
+    memory.wasRefined = memory.isRefined && wasVisitedBefore(memory);
+    memory.isRefined = memory.isVisible = false;
     memory.isStop = visit.prediction != Prediction::Refine;
     memory.visitedFrame = frameNumber_;
     if (counting_ == nullptr || crossesNear(frame_->view, *visit.node.boxModel)) {
@@ -130,13 +149,13 @@ void CoherentStrategy::visit(uint32_t index) {
 
 void CoherentStrategy::ask(uint32_t index) {
     if (late_ != nullptr && visits_[index].prediction == Prediction::Stop) return askLate(index);
-    visits_[index].ticket = counting_->query(*visits_[index].node.boxModel);
+    const QueryTicket ticket = counting_->query(*visits_[index].node.boxModel);
     if (rules_.doesWaitAtOnce) {
         ++frame_->record.waits;
-        answer(index, counting_->wait(visits_[index].ticket));
+        answer(index, counting_->wait(ticket));
         return;
     }
-    pending_.push_back(index);
+    pending_.push_back({index, ticket});
     if (visits_[index].prediction == Prediction::Stop) emit(index);
 }
 
@@ -159,7 +178,7 @@ void CoherentStrategy::takeLateAnswers() {
         const std::optional<uint64_t> visiblePx = late_->poll(query.ticket);
         if (!visiblePx) break;
         Memory* memory = memory_.find(query.slot, query.page);
-        if (memory != nullptr && memory->visitedFrame + 1 == frameNumber_ && memory->isStop) {
+        if (memory != nullptr && wasVisitedBefore(*memory) && memory->isStop) {
             memory->isDoubted = *visiblePx == 0;
             memory->isVisible = !memory->isDoubted;
             if (memory->isVisible) memory->bias = biasOf(*visiblePx, query.outlinePx);
@@ -168,16 +187,19 @@ void CoherentStrategy::takeLateAnswers() {
     }
 }
 
-CoherentStrategy::Prediction CoherentStrategy::predict(const Visit& visit, const Memory& memory) {
+CoherentStrategy::Prediction CoherentStrategy::predict(uint32_t index) {
     if (rules_.predict == CoherentRules::Predict::Never) return Prediction::Delay;
+    const Visit& visit = visits_[index];
+    const Memory& memory = *visit.memory;
     // New, back in the frustum, or hidden.
-    if (memory.visitedFrame + 1 != frameNumber_ || !memory.isVisible) return Prediction::Delay;
+    if (!wasVisitedBefore(memory) || !memory.isVisible) return Prediction::Delay;
     // Asked again from the same place it would come and go.
     if (memory.isDoubted && frame_->isSameView) return Prediction::Delay;
     if (rules_.predict == CoherentRules::Predict::InOrder) {
         return isFine(visit, lastBias_) ? Prediction::Stop : Prediction::Refine;
     }
-    if (!memory.isStop && !rules_.options.isAsPublished && hasHiddenChildrenOnly(visit)) {
+    if (!memory.isStop && !rules_.options.isAsPublished &&
+        hasHiddenChildrenOnly(children(index, 0.0))) {
         return Prediction::Delay;
     }
     if (memory.isStop || !rules_.doesWeighError) {
@@ -185,18 +207,18 @@ CoherentStrategy::Prediction CoherentStrategy::predict(const Visit& visit, const
         const bool isSure = isFine(visit, memory.bias * (1.0 + rules_.options.caution));
         return isSure || !rules_.doesWeighError ? Prediction::Stop : Prediction::Delay;
     }
-    return mayRise(visit) ? Prediction::Delay : Prediction::Refine;
+    if (!mayCoarsen_) return Prediction::Refine;
+    return mayRise(visit, children(index, 0.0)) ? Prediction::Delay : Prediction::Refine;
 }
 
 // Its own box was seen and nothing below it: it goes on waiting for its answer. Refined at once,
 // its children would be asked about before what hides them is drawn, be seen, and hidden again when
 // it waits: a still view would never rest.
-bool CoherentStrategy::hasHiddenChildrenOnly(const Visit& visit) {
-    const NodeRange children = frame_->tree.children(visit.node);
+bool CoherentStrategy::hasHiddenChildrenOnly(const NodeRange& children) {
     bool hasHidden = false;
     for (uint32_t i = 0; i < children.size(); ++i) {
         const Memory& memory = memory_[children[i]];
-        if (memory.visitedFrame + 1 != frameNumber_) continue;
+        if (!wasVisitedBefore(memory)) continue;
         if (memory.isVisible) return false;
         hasHidden = true;
     }
@@ -205,15 +227,13 @@ bool CoherentStrategy::hasHiddenChildrenOnly(const Visit& visit) {
 
 // Would the node do in place of its children, by what they answered? A hidden child weighs nothing;
 // one that was out of the frustum does not count.
-bool CoherentStrategy::mayRise(const Visit& visit) {
-    if (!mayCoarsen_) return false;
-    const NodeRange children = frame_->tree.children(visit.node);
+bool CoherentStrategy::mayRise(const Visit& visit, const NodeRange& children) {
     double biasSum = 0.0;
     uint32_t count = 0;
     for (uint32_t i = 0; i < children.size(); ++i) {
         const Node child = children[i];
         const Memory& memory = memory_[child];
-        if (memory.visitedFrame + 1 != frameNumber_) continue;
+        if (!wasVisitedBefore(memory)) continue;
         ++count;
         // The listing asks all children, the hidden ones as well, whether they stopped.
         if (rules_.options.isAsPublished && !memory.isStop) return false;
@@ -229,7 +249,7 @@ bool CoherentStrategy::mayRise(const Visit& visit) {
 // A box that reaches the eye's side of the near plane is visible, whatever a query would say.
 void CoherentStrategy::seeUnasked(uint32_t index) {
     Visit& visit = visits_[index];
-    Memory& memory = memory_[visit.node];
+    Memory& memory = *visit.memory;
     visit.visiblePx = static_cast<uint64_t>(frame_->view.camera().widthPx) *
                       static_cast<uint64_t>(frame_->view.camera().heightPx);
     memory.bias = 1.0;
@@ -240,7 +260,7 @@ void CoherentStrategy::seeUnasked(uint32_t index) {
 
 void CoherentStrategy::answer(uint32_t index, uint64_t visiblePx) {
     Visit& visit = visits_[index];
-    Memory& memory = memory_[visit.node];
+    Memory& memory = *visit.memory;
     PredictionCounts& counts = frame_->record.predictions;
     const bool wasStop = visit.prediction == Prediction::Stop;
     visit.visiblePx = visiblePx;
@@ -251,7 +271,7 @@ void CoherentStrategy::answer(uint32_t index, uint64_t visiblePx) {
     }
     markVisible(index);
     memory.bias = lastBias_ = biasOf(visiblePx, boxPixels(frame_->view, *visit.node.boxModel));
-    const bool staysRefined = !mayCoarsen_ && memory.refinedFrame + 1 == frameNumber_;
+    const bool staysRefined = !mayCoarsen_ && memory.wasRefined;
     memory.isStop = isFine(visit, memory.bias) && !staysRefined;
     if (!wasStop) {
         ++counts.delayVisible;
@@ -264,14 +284,14 @@ void CoherentStrategy::answer(uint32_t index, uint64_t visiblePx) {
 
 void CoherentStrategy::markVisible(uint32_t index) {
     for (; index != kNoParent; index = visits_[index].parent) {
-        Memory& memory = memory_[visits_[index].node];
+        Memory& memory = *visits_[index].memory;
         if (memory.isVisible) return;
         memory.isVisible = true;
     }
 }
 
 void CoherentStrategy::emit(uint32_t index) {
-    if (memory_[visits_[index].node].isStop) {
+    if (visits_[index].memory->isStop) {
         draw(index);
     } else {
         refine(index);
@@ -289,23 +309,22 @@ void CoherentStrategy::draw(uint32_t index) {
 }
 
 void CoherentStrategy::refine(uint32_t index) {
-    Memory& memory = memory_[visits_[index].node];
-    const NodeRange children =
-        frame_->tree.children(visits_[index].node, priorityOf(visits_[index]));
-    const bool canBe = canRefine(memory, children);
-    const uint32_t probeLevel = visits_[index].probeLevel;
-    if (probeLevel > 0) {
-        frame_->sink.want(visits_[index].node, priorityOf(visits_[index]), Use::StandIn);
-        if (probeLevel >= frame_->probeLevels) return;
+    const Visit visit = visits_[index];  // push() moves them
+    const double priority = priorityOf(visit);
+    const NodeRange family = children(index, priority);
+    const bool canBe = canRefine(*visit.memory, family);
+    if (visit.probeLevel > 0) {
+        frame_->sink.want(visit.node, priority, Use::StandIn);
+        if (visit.probeLevel >= frame_->probeLevels) return;
     } else if (canBe) {
-        memory.refinedFrame = frameNumber_;
-        frame_->sink.refine(visits_[index].node);
-        frame_->sink.keep(visits_[index].node);
+        visit.memory->isRefined = true;
+        frame_->sink.refine(visit.node);
+        frame_->sink.keep(visit.node);
     } else if (!drawStandIn(index)) {
         standInFor(index);
     }
-    const uint32_t below = probeLevel > 0 || !canBe ? probeLevel + 1 : 0;
-    for (uint32_t i = 0; i < children.size(); ++i) push(children[i], index, below);
+    const uint32_t below = visit.probeLevel > 0 || !canBe ? visit.probeLevel + 1 : 0;
+    for (uint32_t i = 0; i < family.size(); ++i) push(family[i], index, below);
 }
 
 // A node may be left for its children when all that are not known to be hidden are there, or when
@@ -313,19 +332,18 @@ void CoherentStrategy::refine(uint32_t index) {
 // stand-in beside the others.
 bool CoherentStrategy::canRefine(const Memory& memory, const NodeRange& children) {
     if (children.empty()) return false;
-    const bool wasRefined = memory.refinedFrame + 1 == frameNumber_;
     bool isWhole = true;
     for (uint32_t i = 0; i < children.size(); ++i) {
         const Node child = children[i];
         const cache::PageState state = frame_->sink.state(child);
         if (state == cache::PageState::Resident) continue;
         const Memory& known = memory_[child];
-        const bool isHidden = known.visitedFrame + 1 == frameNumber_ && !known.isVisible;
+        const bool isHidden = wasVisitedBefore(known) && !known.isVisible;
         if (isHidden || !frame_->view.intersectsFrustum(*child.boxModel)) continue;
         if (state == cache::PageState::Failed) return false;
         isWhole = false;
     }
-    return isWhole || wasRefined;
+    return isWhole || memory.wasRefined;
 }
 
 // The nearest resident ancestor covers a node that is seen and not there.

@@ -42,38 +42,51 @@ public:
 
 private:
     enum class Prediction : uint8_t { Refine, Stop, Delay };
+    // Half a cache line with the page's id: the walk waits for memory more than for anything else.
     struct Memory {
-        uint64_t visitedFrame = 0;  // of this strategy
-        uint64_t refinedFrame = 0;
         double bias = 1.0;
-        bool isVisible = false;
-        bool isStop = false;
-        bool isDoubted = false;  // a late answer saw nothing of it, whatever the pyramid says
+        uint32_t visitedFrame = 0;  // of this strategy
+        bool isVisible : 1 = false;
+        bool isStop : 1 = false;
+        bool isDoubted : 1 = false;   // a late answer saw nothing of it, whatever the pyramid says
+        bool isRefined : 1 = false;   // in the frame of its last visit
+        bool wasRefined : 1 = false;  // in the frame before that
     };
-    // A node in this frame.
+    // A node in this frame. A cache line.
     struct Visit {
         Node node;
-        uint32_t parent = 0;
-        float distance = 0;
+        Memory* memory = nullptr;  // null: outside the frustum
         double ssePx = 0;
-        double excess = 1;  // of the parent's error: how badly it is missed
         uint64_t visiblePx = 0;
-        QueryTicket ticket;
-        Prediction prediction = Prediction::Delay;
+        uint32_t parent = 0;
         // Levels below the node that is drawn as a stand-in: tested and asked for, never drawn. 0:
         // there is none above.
         uint32_t probeLevel = 0;
+        Prediction prediction = Prediction::Delay;
         bool isDrawn = false;
+    };
+    struct Queued {
+        float distance = 0;
+        uint32_t visit = 0;
+    };
+    struct Asked {
+        uint32_t visit = 0;
+        QueryTicket ticket;
     };
 
     void push(const Node& node, uint32_t parent, uint32_t probeLevel);
     [[nodiscard]] uint32_t pop();
     void visit(uint32_t index);
-    [[nodiscard]] Prediction predict(const Visit& visit, const Memory& memory);
-    [[nodiscard]] bool mayRise(const Visit& visit);
+    [[nodiscard]] Prediction predict(uint32_t index);
+    [[nodiscard]] bool mayRise(const Visit& visit, const NodeRange& children);
     void askLate(uint32_t index);
     void takeLateAnswers();
-    [[nodiscard]] bool hasHiddenChildrenOnly(const Visit& visit);
+    [[nodiscard]] bool hasHiddenChildrenOnly(const NodeRange& children);
+    [[nodiscard]] const NodeRange& children(uint32_t index, double priority);
+    [[nodiscard]] bool wasVisitedBefore(const Memory& memory) const {
+        return memory.visitedFrame + 1 == frameNumber_;
+    }
+    void takeAnswers(bool doesPoll);
     void ask(uint32_t index);
     void answer(uint32_t index, uint64_t visiblePx);
     void seeUnasked(uint32_t index);
@@ -87,11 +100,11 @@ private:
     [[nodiscard]] bool isFine(const Visit& visit, double bias) const;
     [[nodiscard]] double biasOf(uint64_t visiblePx, double outlinePx) const;
     [[nodiscard]] double priorityOf(const Visit& visit) const;
-    [[nodiscard]] bool isLater(uint32_t a, uint32_t b) const;
+    [[nodiscard]] bool isLater(const Queued& a, const Queued& b) const;
 
     CoherentRules rules_;
     NodeMemory<Memory> memory_;
-    uint64_t frameNumber_ = 1;  // memories of frame 0 are of no frame
+    uint32_t frameNumber_ = 1;  // memories of frame 0 are of no frame
     double lastBias_ = 1.0;     // of the last answer in order
     FrameContext* frame_ = nullptr;
     CountingVisibility* counting_ = nullptr;
@@ -108,8 +121,11 @@ private:
     bool mayCoarsen_ = true;  // in this frame
     double lastTauPx_ = 0.0;
     std::vector<Visit> visits_;
-    std::vector<uint32_t> queue_;   // a heap of visits, nearest first
-    std::deque<uint32_t> pending_;  // visits that were asked about, oldest first
+    std::vector<Queued> queue_;  // a heap, nearest first
+    std::deque<Asked> pending_;  // oldest first
+    // Looked up for the prediction, used again by what follows from it.
+    uint32_t familyOf_ = 0;
+    NodeRange family_;
 };
 
 }  // namespace pagoda::hlod

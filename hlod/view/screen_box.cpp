@@ -76,6 +76,14 @@ double area(const Polygon& polygon) {
     return 0.5 * twice;
 }
 
+double areaInside(Polygon polygon, double width, double height) {
+    polygon = clip(polygon, 0, -1.0, 0.0);
+    polygon = clip(polygon, 0, 1.0, width);
+    polygon = clip(polygon, 1, -1.0, 0.0);
+    polygon = clip(polygon, 1, 1.0, height);
+    return area(polygon);
+}
+
 // Corners around the faces: least and greatest x, y, z.
 constexpr size_t kFaces[6][4] = {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                  {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}};
@@ -108,13 +116,7 @@ double boxPixels(const View& view, const Box3d& box) {
         if (!isSeen) continue;
         Polygon quad;
         for (const size_t corner : kFaces[face]) quad.add(corners[corner]);
-        if (!isWhole) {
-            quad = clip(quad, 0, -1.0, 0.0);
-            quad = clip(quad, 0, 1.0, width);
-            quad = clip(quad, 1, -1.0, 0.0);
-            quad = clip(quad, 1, 1.0, height);
-        }
-        pixels += std::abs(area(quad));
+        pixels += std::abs(isWhole ? area(quad) : areaInside(quad, width, height));
     }
     return pixels;
 }
