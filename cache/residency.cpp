@@ -160,11 +160,13 @@ bool Residency::uploadOne(PageId id, const ooc::Page& page) {
 
 PageState Residency::want(const PageRequest& request, bool isStandIn) {
     const PageId id = request.id;
-    if (const auto found = prefetched_.find(id); found != prefetched_.end()) {
-        counters_.usedPrefetchedBytes += found->second;
-        prefetched_.erase(found);
+    if (!prefetched_.empty()) {
+        if (const auto found = prefetched_.find(id); found != prefetched_.end()) {
+            counters_.usedPrefetchedBytes += found->second;
+            prefetched_.erase(found);
+        }
     }
-    if (const auto used = gpuLru_.use(id, frameIndex_, !isStandIn)) {
+    if (const auto used = gpuLru_.use(id, frameIndex_, !isStandIn, request.slot)) {
         if (used->isNewDemand) demandBytes_ += used->sizeBytes;
         return PageState::Resident;
     }
@@ -191,8 +193,8 @@ void Residency::demand(PageId id, uint64_t sizeBytes, bool isStandIn) {
     if (!isStandIn && demanded_.insert(id).second) demandBytes_ += sizeBytes;
 }
 
-void Residency::keep(PageId page) {
-    if (gpuLru_.contains(page)) gpuLru_.refresh(page, keepSinceFrame());
+void Residency::keep(PageId page, uint32_t slot) {
+    gpuLru_.refresh(page, keepSinceFrame(), slot);
 }
 
 void Residency::prefetch(const PageRequest& request) {

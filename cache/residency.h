@@ -29,7 +29,8 @@ enum class PageState {
 struct PageRequest {
     PageId id;
     const ooc::NodeRecord& node;
-    double priority = 0;  // greater is sooner
+    double priority = 0;                // greater is sooner
+    uint32_t slot = LruPages::kNoSlot;  // of its node (IndexCache): finds the page faster
 };
 
 struct PageFault {
@@ -70,12 +71,12 @@ public:
     [[nodiscard]] PageState want(const PageRequest& request, bool isStandIn = false);
     // A page that would stand in for what is drawn: goes after all that is older, but is neither
     // pinned nor demanded, so that it never keeps the cut itself out.
-    void keep(PageId page);
+    void keep(PageId page, uint32_t slot = LruPages::kNoSlot);
     // Asks for what nothing on the screen needs yet: after everything that is wanted.
     void prefetch(const PageRequest& request);
     [[nodiscard]] bool isResident(PageId page) const { return gpuLru_.contains(page); }
-    [[nodiscard]] PageState state(PageId page) const {
-        if (gpuLru_.contains(page)) return PageState::Resident;
+    [[nodiscard]] PageState state(PageId page, uint32_t slot = LruPages::kNoSlot) const {
+        if (gpuLru_.contains(page, slot)) return PageState::Resident;
         return failed_.contains(page) ? PageState::Failed : PageState::Absent;
     }
     void unpinAll() { gpuLru_.unpinAll(); }

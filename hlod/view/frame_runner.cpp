@@ -49,17 +49,17 @@ public:
         : runner_(runner), residency_(runner.streaming_.residency()), record_(record) {}
 
     cache::PageState state(const Node& node) const override {
-        return residency_.state(node.page());
+        return residency_.state(node.page(), node.slot);
     }
     cache::PageState want(const Node& node, double priority, Use use) override {
         const cache::PageState state =
-            residency_.want({node.page(), *node.record, priority}, use == Use::StandIn);
+            residency_.want({node.page(), *node.record, priority, node.slot}, use == Use::StandIn);
         if (runner_.doesPrefetch_) {
             runner_.prefetcher_.noteWant(node, state == cache::PageState::Resident);
         }
         return state;
     }
-    void keep(const Node& node) override { residency_.keep(node.page()); }
+    void keep(const Node& node) override { residency_.keep(node.page(), node.slot); }
     void refine(const Node& node) override {
         runner_.cut_.refine(node);
         if (runner_.doesPrefetch_) runner_.prefetcher_.noteRefined(node);

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace pagoda::cache {
@@ -214,6 +215,61 @@ TEST(LruPages, UseTouchesPinsAndTellsTheFirstDemandOfAFrame) {
     pages.unpinAll();
     EXPECT_TRUE(pages.makeRoom(70, evicted, 4));
     EXPECT_EQ(evicted, std::vector{page(1)});
+}
+
+TEST(LruPages, WhoMovedOnWithMostOfThemGoesInTheOrderOfItsLastUse) {
+    constexpr uint32_t kPages = 600;
+    constexpr uint64_t kSeed = 11;
+    SCOPED_TRACE(kSeed);
+    std::mt19937_64 random(kSeed);
+    LruPages pages(kPages);
+    std::map<PageId, uint64_t> lastFrames;
+    for (uint32_t i = 0; i < kPages; ++i) {
+        pages.insert(page(1 + i), 1, 1);
+        lastFrames[page(1 + i)] = 1;
+    }
+    for (uint64_t frame = 2; frame < 60; ++frame) {
+        for (auto& [id, last] : lastFrames) {
+            if (random() % 20 == 0) continue;
+            ASSERT_TRUE(pages.use(id, frame, true));
+            last = frame;
+        }
+        pages.unpinAll();
+        if (frame % 10 != 0) continue;
+        for (int i = 0; i < 200; ++i) {  // comes back to the frame that it left
+            pages.pin(page(1));
+            pages.unpin(page(1));
+        }
+    }
+    std::vector<std::pair<uint64_t, PageId>> order;
+    for (const auto& [id, last] : lastFrames) order.emplace_back(last, id);
+    std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
+        return a.first != b.first ? a.first < b.first : b.second < a.second;
+    });
+    for (const auto& [last, id] : order) {
+        std::vector<PageId> evicted;
+        ASSERT_EQ(pages.hasRoom(1, last), pages.usedBytes() < kPages);
+        ASSERT_TRUE(pages.evictOldest(evicted));
+        ASSERT_EQ(evicted, std::vector{id});
+    }
+    EXPECT_EQ(pages.usedBytes(), 0u);
+}
+
+TEST(LruPages, ASlotOnlyHintsAtAPage) {
+    LruPages pages(100);
+    constexpr uint32_t kSlot = 7;
+    EXPECT_FALSE(pages.contains(page(1), kSlot));
+    pages.insert(page(1), 10, 1);
+    pages.insert(page(2), 20, 1);
+    EXPECT_EQ(pages.use(page(1), 2, true, kSlot)->sizeBytes, 10u);
+    EXPECT_EQ(pages.use(page(2), 2, true, kSlot)->sizeBytes, 20u);  // the slot's next owner
+    EXPECT_TRUE(pages.contains(page(1), kSlot));
+    pages.unpinAll();
+    pages.erase(page(1));
+    EXPECT_FALSE(pages.contains(page(1), kSlot));
+    pages.insert(page(3), 30, 3);  // where the first one was
+    EXPECT_FALSE(pages.contains(page(1), kSlot));
+    EXPECT_EQ(pages.use(page(3), 3, true, kSlot)->sizeBytes, 30u);
 }
 
 }  // namespace
