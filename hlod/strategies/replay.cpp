@@ -36,6 +36,7 @@ void ReplayStrategy::walk(FrameContext& frame, const Node& node, bool isBelowHid
         return;
     }
     if (!isHidden && !above_.contains(page)) return;
+    frame.sink.refine(node);
     const NodeRange children = frame.tree.children(node);
     for (uint32_t i = 0; i < children.size(); ++i) walk(frame, children[i], isHidden);
 }

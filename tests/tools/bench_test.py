@@ -19,7 +19,7 @@ from page import Page
 
 PAGODA = program.Program(sys.argv[1])
 STRATEGIES = ["frustum", "bool", "sw", "simp", "coh", "hzb", "late"]
-FRAMES, REPEATS, TAUS = 4, 2, [2, 32]
+FRAMES, REPEATS, TAUS, STILL_EVERY = 4, 2, [2, 32], 3
 MEANS = ["drawn_nodes", "drawn_triangles", "queries", "rarn", "delayed", "wrong_pixels",
          "covered_pixels", "psnr_luma", "reference_id_differences", "psnr_luma_reference"]
 
@@ -36,7 +36,7 @@ class BenchTest(unittest.TestCase):
             run = PAGODA.run("-q", *words)
             assert run.code == 0, run.err
         cls.result = cls.bench("--strategy", ",".join(STRATEGIES), "--tau", ",".join(map(str, TAUS)),
-                               "--repeats", REPEATS, "--reference-every", 2,
+                               "--repeats", REPEATS, "--reference-every", 2, "--still-every", STILL_EVERY,
                                "--json", folder / "r.json", "--csv", folder / "r.csv",
                                "--html", folder / "r.html")
         assert cls.result.code == 0, cls.result.err
@@ -93,6 +93,32 @@ class BenchTest(unittest.TestCase):
             self.assertLessEqual(fine["reference_id_differences"], coarse["reference_id_differences"])
             self.assertGreater(coarse["reference_id_differences"], 0)
             self.assertGreaterEqual(fine["psnr_luma_reference"], coarse["psnr_luma_reference"])
+
+    def test_no_hole_opens(self):
+        for run in self.report["runs"]:
+            self.assertEqual((run["holes"], run["hole_frames"]), (0, 0), (run["strategy"], run["tau"]))
+
+    def test_nothing_gets_coarser_while_the_camera_stands_still(self):
+        for run in self.report["runs"]:
+            still = run["still"]
+            self.assertEqual(still["frames"], 2 * 12)  # stops at frames 0 and 3
+            self.assertGreater(still["covered_pixels"], 0)
+            if run["strategy"] != "simp":
+                self.assertEqual((still["coarser_pixels"], still["coarser_frames"]), (0, 0),
+                                 (run["strategy"], run["tau"]))
+            self.assertLessEqual(still["coarser_by_others"], still["coarser_pixels"])
+            self.assertEqual((still["coarser_by_stand_ins"], still["coarser_by_tau"]), (0, 0))
+
+    def test_live_frames_are_held_against_the_leaves_too(self):
+        run = self.bench("--strategy", "frustum,coh", "--tau", 2, "--disk", "1MB/s,20ms", "--repeats", 0,
+                         "--truth-every", 0, "--no-settled", "--reference-every", 3,
+                         "--json", self.folder / "l.json")
+        self.assertEqual(run.code, 0, run.err)
+        for run in json.loads((self.folder / "l.json").read_text())["runs"]:
+            self.assertEqual(run["reference_frames"], 0)
+            self.assertEqual((run["live"]["frames"], run["live"]["reference_frames"]), (FRAMES, 2))
+            self.assertLessEqual(run["live"]["hole_frames"], 2)
+            self.assertEqual(run["still"]["frames"], 0)
 
     def test_ratios_hold_their_value_within_their_interval(self):
         pairs = len(TAUS) * len(STRATEGIES) * (len(STRATEGIES) - 1)

@@ -1,5 +1,6 @@
 #include "viewer/renderer.h"
 
+#include "hlod/strategies/replay.h"
 #include "hlod/strategies/strategies.h"
 #include "tests/viewer/gl_fixture.h"
 #include "tests/viewer/memory_scene.h"
@@ -334,6 +335,12 @@ TEST_F(RendererTest, AZipperIsDrawnExactlyWhereOneSideIsRefined) {
         const uint64_t node = nodeAt(result.picture, 120 * 320 + 160);
         const ooc::NodeId refined = ooc::NodeId::root().child(c.errorA > 0 ? 0 : 1);
         EXPECT_EQ(node, c.zippers == 1 ? refined.value : 0u);
+        // The truth that this cut is held against has the same ones.
+        hlod::ReplayStrategy replay(renderer.runner().cut());
+        Renderer truth(scene.lattice, scene, {});
+        hlod::FrameRecord replayed = truth.render(lookAt(Vec3d(1.0), {0, 0, 3}), replay, {});
+        EXPECT_EQ(replayed.drawnZippers, c.zippers);
+        EXPECT_EQ(truth.read(replayed).colours, result.picture.colours);
     }
 }
 

@@ -6,7 +6,7 @@
 #include "ooc/base/progress.h"
 #include "ooc/store/database.h"
 #include "tools/bench/live.h"
-#include "tools/bench/truth.h"
+#include "tools/bench/still.h"
 
 #include <fmt/format.h>
 
@@ -89,7 +89,11 @@ public:
     }
 
     void forget() { strategy_->forget(); }
-    void setLive(LivePass pass) { run_.live = std::move(pass); }
+    void setLive(LivePass pass) {
+        addFaults(pass.referenceFaults);
+        run_.live = std::move(pass);
+    }
+    void setStill(const StillPass& pass) { run_.still = pass; }
 
     // Each once.
     void addFaults(const std::vector<std::string>& faults) {
@@ -137,7 +141,8 @@ public:
     void compare(hlod::FrameRecord& record, viewer::Renderer& truth, const hlod::Camera& camera,
                  const viewer::RenderOptions& options, const viewer::Picture& tauPicture,
                  const viewer::Picture* leaves) {
-        const viewer::Picture picture = renderer_.read(record);
+        const DrawnPicture drawn = readDrawn(renderer_, record);
+        const viewer::Picture& picture = drawn.picture;
         hlod::ReplayStrategy replay(renderer_.runner().cut());
         viewer::RenderOptions same = options;
         same.tauPx = record.effectiveTauPx;
@@ -159,7 +164,7 @@ public:
         run_.worstPsnrLuma =
             run_.truthFrames == 0 ? quality.luma : std::min(run_.worstPsnrLuma, quality.luma);
         ++run_.truthFrames;
-        if (leaves != nullptr) compareWithLeaves(picture, *leaves);
+        if (leaves != nullptr) compareWithLeaves(drawn, *leaves);
     }
 
     void time(const hlod::Camera& camera, const viewer::RenderOptions& options, bool isLast) {
@@ -184,9 +189,13 @@ public:
     }
 
 private:
-    void compareWithLeaves(const viewer::Picture& picture, const viewer::Picture& leaves) {
-        run_.referenceIdDifferences += static_cast<double>(countDifferentIds(picture, leaves));
-        run_.psnrLumaReference += psnr(picture, leaves).luma;
+    void compareWithLeaves(const DrawnPicture& drawn, const viewer::Picture& leaves) {
+        run_.referenceIdDifferences +=
+            static_cast<double>(countDifferentIds(drawn.picture, leaves));
+        run_.psnrLumaReference += psnr(drawn.picture, leaves).luma;
+        const uint64_t holes = countHoles(drawn, leaves);
+        run_.holes += holes;
+        run_.holeFrames += holes > 0;
         ++run_.referenceFrames;
     }
     static viewer::RendererOptions options(const BenchPlan& plan,
@@ -265,12 +274,15 @@ public:
         const size_t passes = size_t{plan_.doesSettle} + (isLive ? contestants_.size() : 0) +
                               size_t{plan_.truthEvery > 0} + size_t{isResident} +
                               static_cast<size_t>(plan_.repeats);
+        const size_t stillFrames =
+            plan_.stillEvery > 0 ? contestants_.size() * stillPassFrames(plan_, configuration_) : 0;
         progress_.beginStage(
             fmt::format("{}, tau {:g}, {}x{}", configuration_.pathName, configuration_.tauPx,
                         configuration_.widthPx, configuration_.heightPx),
-            frames * passes, "frames");
+            frames * passes + stillFrames, "frames");
         if (plan_.doesSettle) settled();
         if (isLive) live();
+        if (plan_.stillEvery > 0) still();
         if (isResident) preload();
         if (plan_.truthEvery > 0) truth();
         timed();
@@ -280,18 +292,12 @@ public:
     }
 
 private:
-    hlod::Camera camera(size_t frame) const {
-        hlod::Camera camera = configuration_.path.frames[frame];
-        camera.widthPx = configuration_.widthPx;
-        camera.heightPx = configuration_.heightPx;
-        return camera;
-    }
     template <typename Visit>
     void eachFrame(Visit&& visit) {
         for (auto& contestant : contestants_) contestant->forget();
         for (size_t i = 0; i < configuration_.path.frames.size(); ++i) {
             progress_.check();
-            visit(i, camera(i));
+            visit(i, configuration_.camera(i));
             progress_.advance(1);
         }
     }
@@ -308,6 +314,13 @@ private:
         for (size_t i = 0; i < contestants_.size(); ++i) {
             contestants_[i]->setLive(
                 runLive(plan_, configuration_, plan_.strategies[i], database_, progress_));
+        }
+    }
+
+    void still() {
+        for (size_t i = 0; i < contestants_.size(); ++i) {
+            contestants_[i]->setStill(
+                runStill(plan_, configuration_, plan_.strategies[i], database_, progress_));
         }
     }
 
@@ -370,6 +383,13 @@ private:
 };
 
 }  // namespace
+
+hlod::Camera BenchConfiguration::camera(size_t frame) const {
+    hlod::Camera camera = path.frames[frame];
+    camera.widthPx = widthPx;
+    camera.heightPx = heightPx;
+    return camera;
+}
 
 std::vector<BenchRun> runBench(const BenchPlan& plan, const BenchConfiguration& configuration,
                                Progress& progress) {

@@ -8,12 +8,16 @@
 //   truth    live, all resident: pictures against the same cut without culling, and against the
 //            cut at tau (what `bool` draws); on demand also against the leaves.
 //   timed    live, all resident, `repeats` times: counters and times. No picture is read.
-// With a simulated disk there is one more, of a renderer of its own from cold caches:
-//   live     on a virtual clock, so that what is not there in time shows (fallback pixels).
+// Two more are on demand, each on a renderer of its own:
+//   still    live, all resident: at every so many frames the camera stops, and pixels whose node
+//            gets coarser are counted.
+//   live     with a simulated disk, from cold caches, on a virtual clock, so that what is not there
+//            in time shows (fallback pixels; on demand also holes, against the leaves).
 #pragma once
 
 #include "hlod/view/camera_path.h"
 #include "tools/bench/statistics.h"
+#include "tools/bench/truth.h"
 #include "tools/runtime_options.h"
 
 #include <functional>
@@ -32,6 +36,8 @@ struct BenchConfiguration {
     double tauPx = 1;
     int widthPx = 640, heightPx = 480;
     uint32_t queryLatencyFrames = 0;
+
+    [[nodiscard]] hlod::Camera camera(size_t frame) const;
 };
 
 struct BenchPlan {
@@ -40,8 +46,10 @@ struct BenchPlan {
     std::vector<BenchConfiguration> configurations;
     RuntimeOptions runtime;
     int repeats = 3;
-    int truthEvery = 1;      // frames between those whose pixels are compared; 0: none
-    int referenceEvery = 0;  // of these, those also held against the leaves; 0: none
+    int truthEvery = 1;  // frames between those whose pixels are compared; 0: none
+    // Of these, and of the live pass's, frames between those held against the leaves; 0: none.
+    int referenceEvery = 0;
+    int stillEvery = 0;  // frames between those at which the camera stops; 0: no still pass
     bool doesSettle = true;
     Vec3f worldUp{0, 0, 1};
     // For reports only.
@@ -60,6 +68,17 @@ struct LivePass {
     uint64_t pageBytesRead = 0;
     uint64_t prefetchedBytes = 0, usedPrefetchedBytes = 0;
     std::vector<double> fallbackShareSeries;
+    size_t referenceFrames = 0;  // held against the leaves
+    uint64_t holes = 0, holeFrames = 0;
+    std::vector<std::string> referenceFaults;  // leaves that could not be read
+};
+
+// Frames of a camera that stands still (still.h). Sums over them.
+struct StillPass {
+    size_t frames = 0;  // each held against the one before
+    uint64_t coveredPixels = 0;
+    CoarserPixels coarser;
+    uint64_t coarserFrames = 0;  // with any without an allowed cause
 };
 
 // Means over the frames that were looked at.
@@ -86,13 +105,15 @@ struct BenchRun {
     // Against the leaves, where asked for.
     size_t referenceFrames = 0;
     double referenceIdDifferences = 0, psnrLumaReference = 0;
+    uint64_t holes = 0, holeFrames = 0;  // totals; frames with any
     // From the settled pass.
     uint64_t bytesRead = 0;      // with what joined reads bring along
     uint64_t pageBytesRead = 0;  // without
     uint64_t bytesExact = 0;     // pages with a pixel, and their ancestors
     uint64_t unsettledFrames = 0;
     uint64_t gpuBytesPeak = 0, hostBytesPeak = 0;
-    LivePass live;  // without frames when the disk is as it is
+    LivePass live;    // without frames when the disk is as it is
+    StillPass still;  // without frames where not asked for
     std::vector<std::string> faults;
 };
 

@@ -22,7 +22,20 @@ Json toJson(const LivePass& pass) {
             {"page_bytes_read", pass.pageBytesRead},
             {"prefetched_bytes", pass.prefetchedBytes},
             {"used_prefetched_bytes", pass.usedPrefetchedBytes},
-            {"prefetch_precision", share(pass.usedPrefetchedBytes, pass.prefetchedBytes)}};
+            {"prefetch_precision", share(pass.usedPrefetchedBytes, pass.prefetchedBytes)},
+            {"reference_frames", pass.referenceFrames},
+            {"holes", pass.holes},
+            {"hole_frames", pass.holeFrames}};
+}
+
+Json toJson(const StillPass& pass) {
+    return {{"frames", pass.frames},
+            {"covered_pixels", pass.coveredPixels},
+            {"coarser_pixels", pass.coarser.coarser()},
+            {"coarser_frames", pass.coarserFrames},
+            {"coarser_by_others", pass.coarser.byOthers},
+            {"coarser_by_stand_ins", pass.coarser.byStandIns},
+            {"coarser_by_tau", pass.coarser.byTau}};
 }
 
 Json toJson(const BenchRun& run) {
@@ -61,6 +74,8 @@ Json toJson(const BenchRun& run) {
         {"reference_frames", run.referenceFrames},
         {"reference_id_differences", shown(run.referenceIdDifferences)},
         {"psnr_luma_reference", shown(run.psnrLumaReference)},
+        {"holes", run.holes},
+        {"hole_frames", run.holeFrames},
     };
     json["frame_ms"] = numbersJson(run.frameMs);
     json["frame_ms"]["traverse"] = shown(run.traverseMs.median);
@@ -75,6 +90,7 @@ Json toJson(const BenchRun& run) {
     json["gpu_bytes_peak"] = run.gpuBytesPeak;
     json["host_bytes_peak"] = run.hostBytesPeak;
     json["live"] = toJson(run.live);
+    json["still"] = toJson(run.still);
     json["faults"] = run.faults;
     json["series"] = {{"frame_ms", numbersJson(run.frameMsSeries)},
                       {"cpu_ms", numbersJson(run.cpuMsSeries)},
@@ -122,7 +138,8 @@ std::string benchToJson(const BenchPlan& plan, const std::vector<BenchRun>& runs
                              {"speed", plan.speed},
                              {"repeats", plan.repeats},
                              {"truth_every", plan.truthEvery},
-                             {"reference_every", plan.referenceEvery}});
+                             {"reference_every", plan.referenceEvery},
+                             {"still_every", plan.stillEvery}});
     json["runs"] = list;
     json["ratios"] = ratiosJson(runs);
     return json.dump(1);

@@ -4,6 +4,7 @@
 #include "ooc/base/progress.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace pagoda::tools {
 namespace {
@@ -21,6 +22,17 @@ void add(LivePass& pass, const hlod::FrameRecord& record) {
     pass.fallbackShareSeries.push_back(share);
 }
 
+void addHoles(LivePass& pass, const DrawnPicture& drawn, viewer::Renderer& leaves,
+              const hlod::Camera& camera, const viewer::RenderOptions& look) {
+    hlod::FrameRecord reference = leaves.renderReference(camera, look);
+    const uint64_t holes = countHoles(drawn, leaves.read(reference));
+    pass.referenceFaults.insert(pass.referenceFaults.end(), reference.faults.begin(),
+                                reference.faults.end());
+    ++pass.referenceFrames;
+    pass.holes += holes;
+    pass.holeFrames += holes > 0;
+}
+
 }  // namespace
 
 LivePass runLive(const BenchPlan& plan, const BenchConfiguration& configuration,
@@ -34,16 +46,21 @@ LivePass runLive(const BenchPlan& plan, const BenchConfiguration& configuration,
     viewer::Renderer renderer(database.header().lattice, source, options);
     const auto strategy = hlod::makeStrategy(strategyName, plan.runtime.strategyOptions());
     const viewer::RenderOptions look{configuration.tauPx, {}, plan.worldUp};
+    std::optional<viewer::Renderer> leaves;
+    if (plan.referenceEvery > 0) {
+        leaves.emplace(database.header().lattice, source, plan.runtime.rendererOptions());
+    }
     LivePass pass;
     for (size_t i = 0; i < configuration.path.frames.size(); ++i) {
         progress.check();
-        hlod::Camera camera = configuration.path.frames[i];
-        camera.widthPx = configuration.widthPx;
-        camera.heightPx = configuration.heightPx;
+        const hlod::Camera camera = configuration.camera(i);
         if (i == 0) static_cast<void>(renderer.render(camera, *strategy, look));
         hlod::FrameRecord record = renderer.renderLive(camera, *strategy, look);
-        static_cast<void>(renderer.read(record));
+        const DrawnPicture drawn = readDrawn(renderer, record);
         add(pass, record);
+        if (leaves && i % static_cast<size_t>(plan.referenceEvery) == 0) {
+            addHoles(pass, drawn, *leaves, camera, look);
+        }
         clock.advance(1.0 / configuration.path.framesPerSecond);
         progress.advance(1);
     }

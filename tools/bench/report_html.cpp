@@ -127,20 +127,72 @@ std::string runsTable(const std::vector<BenchRun>& runs) {
 
 // ---- Against the leaves
 
+std::string leavesRow(const BenchRun& run, const char* pass, size_t frames, uint64_t holes,
+                      uint64_t holeFrames, const std::string& ids, const std::string& quality) {
+    HtmlRow row;
+    row.cell(configurationName(run));
+    row.cell(escapedHtml(run.strategy));
+    row.cell(fmt::format("{:g}", run.tauPx));
+    row.cell(pass);
+    row.cell(fmt::format("{}", frames));
+    row.cell(formatCount(holes));
+    row.cell(fmt::format("{}", holeFrames));
+    row.cell(ids);
+    row.cell(quality);
+    return row.take();
+}
+
 std::string leavesTable(const std::vector<BenchRun>& runs) {
     std::string rows;
     for (const BenchRun& run : runs) {
-        if (run.referenceFrames == 0) continue;
-        rows += fmt::format(
-            "<tr><td>{}</td><td>{}</td><td>{:g}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-            configurationName(run), escapedHtml(run.strategy), run.tauPx, run.referenceFrames,
-            shownHtml(run.referenceIdDifferences), decibels(run.psnrLumaReference));
+        if (run.referenceFrames > 0) {
+            rows +=
+                leavesRow(run, "all resident", run.referenceFrames, run.holes, run.holeFrames,
+                          shownHtml(run.referenceIdDifferences), decibels(run.psnrLumaReference));
+        }
+        const LivePass& live = run.live;
+        if (live.referenceFrames > 0) {
+            rows +=
+                leavesRow(run, "live", live.referenceFrames, live.holes, live.holeFrames, "", "");
+        }
     }
     if (rows.empty()) return "";
     return "<h2>Against the leaves</h2>\n<div class=\"wide\"><table>\n<thead><tr><th>path</th>"
-           "<th>strategy</th><th>tau, px</th><th>frames compared</th>"
-           "<th>pixels of other ids, a frame</th><th>PSNR Y, dB</th></tr></thead>\n<tbody>\n" +
-           rows + "</tbody></table></div>\n";
+           "<th>strategy</th><th>tau, px</th><th>pass</th><th>frames compared</th><th>holes, "
+           "pixels in all</th><th>frames with any</th><th>pixels of other ids, a frame</th>"
+           "<th>PSNR Y, dB</th></tr></thead>\n<tbody>\n" +
+           rows +
+           "</tbody></table></div>\n<p class=\"note\">Hole: the leaves cover all pixels within "
+           "ceil(tau) + 1 of it, and it shows background, or a surface behind them all by more "
+           "than its node's error.</p>\n";
+}
+
+// ---- A camera that stands still
+
+std::string stillTable(const std::vector<BenchRun>& runs) {
+    std::string rows;
+    for (const BenchRun& run : runs) {
+        const StillPass& still = run.still;
+        if (still.frames == 0) continue;
+        HtmlRow row;
+        row.cell(configurationName(run));
+        row.cell(escapedHtml(run.strategy));
+        row.cell(fmt::format("{:g}", run.tauPx));
+        for (const uint64_t count :
+             {uint64_t{still.frames}, still.coarser.coarser(), still.coarserFrames,
+              still.coarser.byOthers, still.coarser.byStandIns, still.coarser.byTau}) {
+            row.cell(formatCount(count));
+        }
+        rows += row.take();
+    }
+    if (rows.empty()) return "";
+    return "<h2>A camera that stands still</h2>\n<div class=\"wide\"><table>\n<thead><tr>"
+           "<th>path</th><th>strategy</th><th>tau, px</th><th>frames</th><th>pixels that got "
+           "coarser</th><th>frames with any</th><th>of these: another surface</th><th>not of "
+           "these: stand-ins</th><th>tau rose</th></tr></thead>\n<tbody>\n" +
+           rows +
+           "</tbody></table></div>\n<p class=\"note\">Pixels whose node has a greater error "
+           "than in the frame before.</p>\n";
 }
 
 // ---- Ratios
@@ -219,7 +271,8 @@ std::string benchToHtml(const BenchPlan& plan, const std::vector<BenchRun>& runs
     const std::string name = std::filesystem::path(plan.database).filename().string();
     return htmlPage("Error against run time: " + name,
                     summary(plan, runs, device, name) + faultsHtml(runs) + runsTable(runs) +
-                        leavesTable(runs) + ratiosTable(runs) + figuresHtml(figures));
+                        leavesTable(runs) + stillTable(runs) + ratiosTable(runs) +
+                        figuresHtml(figures));
 }
 
 }  // namespace pagoda::tools

@@ -12,7 +12,7 @@ from pathlib import Path
 EQUAL_DB = 99
 KEY = ("path", "tau", "width", "height", "query_latency")
 COLUMNS = ["strategy", "tau", "size", "latency", "nodes", "k tri.", "queries", "RARN / drawn, %",
-           "delayed / drawn, %", "wrong px", "PSNR Y, dB", "CPU ms median", "p95", "frustum /", "hardest",
+           "delayed / drawn, %", "wrong px", "holes", "coarser px", "PSNR Y, dB", "CPU ms median", "p95", "frustum /", "hardest",
            "bool /", "read / exact"]
 
 
@@ -36,11 +36,22 @@ def row(report, run):
     return [run["strategy"], f"{run['tau']:g}", f"{run['width']}x{run['height']}", run["query_latency"],
             f"{run['drawn_nodes']:.1f}", f"{run['drawn_triangles'] / 1000:.1f}", f"{run['queries']:.1f}",
             share(run["rarn"], run["drawn_nodes"]), share(run["delayed"], run["drawn_nodes"]),
-            f"{run['wrong_pixels']:g}" if compared else "", psnr if compared else "",
+            f"{run['wrong_pixels']:g}" if compared else "", holes(run), coarser(run), psnr if compared else "",
             f"{run['cpu_ms']['median']:.2f}", f"{run['cpu_ms']['p95']:.2f}",
             ratio(report, run, "frustum", "all"), ratio(report, run, "frustum", "hardest"),
             ratio(report, run, "bool", "all"),
             f"{run['bytes_read'] / exact:.2f}" if exact else ""]
+
+
+def holes(run):
+    """Of frames that were held against the leaves, live ones too; empty where none were."""
+    passes = [part for part in (run, run.get("live", {})) if part.get("reference_frames")]
+    return sum(part.get("holes", 0) for part in passes) if passes else ""
+
+
+def coarser(run):
+    still = run.get("still", {})
+    return still["coarser_pixels"] if still.get("frames") else ""
 
 
 def line(cells):
@@ -53,7 +64,8 @@ def main(folder):
     print("By `tools/bench.sh`; each run's own command and figures are in its page. Means a frame, medians of\n"
           "CPU time of all threads. The columns ending in / are CPU time of that strategy over the row's, hardest\n"
           "that of frustum over its slowest tenth of frames; intervals of 95%. Equal: no pixel of any frame differs\n"
-          "from the cut at tau without culling. What the numbers mean: docs/bench.md.\n")
+          "from the cut at tau without culling. Holes and coarser px: totals, where counted. What the numbers mean:\n"
+          "docs/bench.md.\n")
     for name, report in reports.items():
         model, machine = report["model"], report["machine"]
         print(f"## {name}\n")

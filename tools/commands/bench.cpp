@@ -26,6 +26,7 @@ constexpr const char* kExamples = R"(Examples:
   pagoda bench plant.pagoda --path walk.json --tau 1,2,4 --html report.html
   pagoda bench plant.pagoda --path walk.json --strategy coh,hzb --tau 1,2,4 --size 640x480,1024x768
   pagoda bench plant.pagoda --path walk.json --strategy coh --query-latency 0,1,2 --repeats 1
+  pagoda bench plant.pagoda --path walk.json --reference-every 20 --still-every 20 --repeats 0
 
 Strategies take turns at every frame of the path. Each passes it settled from cold (bytes), live
 with its pixels held against the same cut without culling (wrong pixels, PSNR against the cut at
@@ -104,6 +105,23 @@ void printLive(const BenchRun& run) {
         percent(live.usedPrefetchedBytes, live.prefetchedBytes));
 }
 
+void printHoles(const BenchRun& run, const char* pass, size_t frames, uint64_t holes,
+                uint64_t holeFrames) {
+    if (frames == 0) return;
+    fmt::print("{:<8} {:<12} {}: {} holes in {} of {} frames held against the leaves\n",
+               run.strategy, run.pathName, pass, holes, holeFrames, frames);
+}
+
+void printStill(const BenchRun& run) {
+    const StillPass& still = run.still;
+    if (still.frames == 0) return;
+    fmt::print(
+        "{:<8} {:<12} still: {} pixels got coarser in {} of {} frames ({} by another surface); {} "
+        "more by stand-ins, {} by tau\n",
+        run.strategy, run.pathName, still.coarser.coarser(), still.coarserFrames, still.frames,
+        still.coarser.byOthers, still.coarser.byStandIns, still.coarser.byTau);
+}
+
 void printTable(const std::vector<BenchRun>& runs) {
     fmt::print(
         "{:<8} {:<12} {:>5} {:>9} {:>3} {:>8} {:>9} {:>8} {:>6} {:>7} {:>8} {:>7} {:>9} {:>8}\n",
@@ -120,6 +138,9 @@ void printTable(const std::vector<BenchRun>& runs) {
     }
     for (const BenchRun& run : runs) {
         if (run.live.frames > 0) printLive(run);
+        printHoles(run, "all resident", run.referenceFrames, run.holes, run.holeFrames);
+        printHoles(run, "live", run.live.referenceFrames, run.live.holes, run.live.holeFrames);
+        printStill(run);
     }
 }
 
@@ -190,7 +211,13 @@ void addBenchCommand(CLI::App& app, Session& session) {
         ->capture_default_str();
     command
         ->add_option("--reference-every", arguments->plan.referenceEvery,
-                     "Hold every N-th of these frames against the leaves too; 0: none")
+                     "Hold every N-th of these frames against the leaves too, and of those live "
+                     "from a simulated disk; 0: none")
+        ->check(CLI::Range(0, 1000000))
+        ->capture_default_str();
+    command
+        ->add_option("--still-every", arguments->plan.stillEvery,
+                     "Stop at every N-th frame and count pixels that get coarser; 0: nowhere")
         ->check(CLI::Range(0, 1000000))
         ->capture_default_str();
     command->add_option("--json", arguments->json, "Write all numbers as JSON");

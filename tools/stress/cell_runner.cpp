@@ -2,6 +2,7 @@
 
 #include "cache/thread_loads.h"
 #include "hlod/strategies/preload.h"
+#include "tools/bench/truth.h"
 
 #include <algorithm>
 #include <ctime>
@@ -93,10 +94,10 @@ void CellRunner::run(const hlod::Camera& camera) {
     const bool isJumping = cell_.workload == "teleport";
     if (isJumping && !isStill) beginJump();
     hlod::FrameRecord record = draw(camera);
-    const viewer::Picture picture = renderer_->read(record);
+    DrawnPicture drawn = readDrawn(*renderer_, record);
     count(record);
     countBudgets(record, residency.counters().uploadedPages - uploadedBefore);
-    countPixels(record, picture, isStill);
+    countPixels(record, std::move(drawn), isStill);
     if (isJumping && !isComplete(record)) {
         sharpFrame_ = frame_ + 1;
         // What is read behind a sharp picture is read ahead of the next one.
@@ -104,7 +105,6 @@ void CellRunner::run(const hlod::Camera& camera) {
         cell_.jumps.back().levels = meter_->levelsRead();
     }
     lastCamera_ = camera;
-    lastTauPx_ = record.effectiveTauPx;
     ++frame_;
 }
 
@@ -137,29 +137,12 @@ void CellRunner::countBudgets(const hlod::FrameRecord& record, uint64_t uploaded
         record.gpuBytes > cell_.gpuBudget || record.hostBytes > cell_.hostBudget || isUploadOver;
 }
 
-void CellRunner::countPixels(const hlod::FrameRecord& record, const viewer::Picture& picture,
-                             bool isStill) {
+void CellRunner::countPixels(const hlod::FrameRecord& record, DrawnPicture drawn, bool isStill) {
     coveredPx_.push_back(static_cast<double>(record.coveredPixels));
     missingPx_.push_back(static_cast<double>(record.fallbackPixels));
     isEmpty_.push_back(record.drawnNodes == 0);
-
-    const hlod::FrameCut& cut = renderer_->runner().cut();
-    std::vector<double> errorOf{0.0};
-    for (size_t i = 0; i < cut.drawn().size(); ++i) {
-        errorOf.push_back(cut.drawnAsStandIn()[i] != 0 ? 0.0
-                                                       : cut.drawn()[i].record->errorModelUnits);
-    }
-    errors_.assign(picture.nodeOrdinals.size(), 0.0);
-    for (size_t i = 0; i < errors_.size(); ++i) {
-        const uint32_t ordinal = picture.nodeOrdinals[i];
-        if (ordinal < errorOf.size()) errors_[i] = errorOf[ordinal];
-    }
-    if (isStill && record.effectiveTauPx <= lastTauPx_ && errors_.size() == lastErrors_.size()) {
-        for (size_t i = 0; i < errors_.size(); ++i) {
-            cell_.coarserPixels += lastErrors_[i] > 0 && errors_[i] > lastErrors_[i];
-        }
-    }
-    errors_.swap(lastErrors_);
+    if (isStill) cell_.coarserPixels += countCoarser(last_, drawn).coarser();
+    last_ = std::move(drawn);
 }
 
 void CellRunner::beginJump() {

@@ -5,6 +5,7 @@
 
 #include "cache/clock.h"
 #include "cache/disk_loads.h"
+#include "tools/bench/drawn_picture.h"
 #include "tools/stress/metered_loads.h"
 #include "tools/stress/stress.h"
 #include "viewer/renderer.h"
@@ -44,7 +45,7 @@ private:
     hlod::FrameRecord draw(const hlod::Camera& camera);
     void count(const hlod::FrameRecord& record);
     void countBudgets(const hlod::FrameRecord& record, uint64_t uploadedPages);
-    void countPixels(const hlod::FrameRecord& record, const viewer::Picture& picture, bool isStill);
+    void countPixels(const hlod::FrameRecord& record, DrawnPicture drawn, bool isStill);
     void beginJump();
     void endJump();
     void countBytes();
@@ -62,8 +63,7 @@ private:
     StressCell cell_;
 
     std::optional<hlod::Camera> lastCamera_;
-    double lastTauPx_ = 0;
-    std::vector<double> errors_, lastErrors_;  // of the node at each pixel; 0: none, or a stand-in
+    DrawnPicture last_;
     std::unordered_set<ooc::NodeId, NodeHash> drawn_;
     std::vector<double> coveredPx_, missingPx_;  // of each frame
     std::vector<bool> isEmpty_;

@@ -81,6 +81,23 @@ TEST(Truth, PixelsOfOverdrawnNodesAreNamedApart) {
     EXPECT_EQ(wrong.wrong, 0u);
 }
 
+// Ids are of opaque surfaces: of what is translucent before them, or before nothing, only the
+// colour tells.
+TEST(Truth, AnotherColourOnTheSameSurfaceIsOfSomethingTranslucentAndWrong) {
+    viewer::Picture seen = picture(4), truth = picture(4);
+    for (viewer::Picture* each : {&seen, &truth}) {
+        each->nodeOrdinals[1] = 0;
+        each->depthsModelUnits[1] = INFINITY;
+    }
+    seen.colours[4 * 0 + 2] = 90;
+    seen.colours[4 * 1 + 3] = 0;
+    EXPECT_EQ(countWrongPixels(seen, truth, nothing).wrong, 2u);
+    EXPECT_EQ(countDifferentIds(seen, truth), 0u);
+    const auto isB = [](ooc::NodeId node) { return node == kB; };
+    EXPECT_EQ(countWrongPixels(seen, truth, isB).wrong, 0u);
+    EXPECT_EQ(countWrongPixels(seen, truth, isB).overdrawn, 2u) << "which may have been B's";
+}
+
 TEST(Truth, EqualPicturesHaveTheNumberForEqual) {
     const Psnr quality = psnr(picture(4), picture(4));
     EXPECT_EQ(quality.luma, kEqualDb);
