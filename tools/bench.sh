@@ -183,7 +183,7 @@ centre() {
 
 variations() {
     local scene inside outside strategies
-    local brief=(--frames 60 --repeats 1 --truth-every 10)
+    local brief=(--frames 60 --repeats 1 --truth-every 10 --no-settled)
     for scene in plant interior lego-show-a; do
         outside=$(outside_of $scene)
         run "$scene-$outside" $scene "$outside" --strategy $few "${brief[@]}"
@@ -197,13 +197,14 @@ variations() {
         run $scene-walk-disk500-off $scene walk --strategy coh --repeats 0 --truth-every 0 \
             --no-settled --disk 500MB/s
     done
+    brief=(--frames 60 --repeats 1 --truth-every 10)
     for scene in city torus hospital clinic; do
         inside=$(inside_of $scene)
         outside=$(outside_of $scene)
         strategies=$few
         [ $scene != torus ] || [[ ,$all, != *,auto,* ]] || strategies=$few,auto
         run "$scene-$inside" $scene "$inside" --strategy "$strategies" "${brief[@]}"
-        run "$scene-$outside" $scene "$outside" --strategy "$strategies" "${brief[@]}"
+        run "$scene-$outside" $scene "$outside" --strategy "$strategies" "${brief[@]}" --no-settled
     done
 }
 

@@ -173,8 +173,10 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
     const bool decidesTheSame = lastToldHash_ == cut_.toldHash() && record.standIns == 0;
     // Answers to what was asked before may still be on their way.
     const bool isAnswered = framesDrawnTheSame_ > static_cast<int>(late_.latencyFrames());
-    record.isSettled =
-        drawsTheSame && isAnswered && (decidesTheSame || framesDrawnTheSame_ >= kSteadyFrames);
+    // Who learns nothing from what was drawn draws the same whenever all that it wants is there.
+    const bool isPlain = isComplete && record.standIns == 0 && !strategy.learnsWhatIsHidden();
+    record.isSettled = isPlain || (drawsTheSame && isAnswered &&
+                                   (decidesTheSame || framesDrawnTheSame_ >= kSteadyFrames));
     lastCamera_ = camera;
     lastToldHash_ = cut_.toldHash();
     lastDrawnHash_ = cut_.drawnHash();
@@ -251,7 +253,8 @@ FrameRecord FrameRunner::settle(const Camera& camera, Strategy& strategy,
     for (int i = 0; i < kMaxSettleFrames && completeFrames < kRestlessFrames; ++i) {
         record = run(camera, strategy, {options.tauPx, probeLevels});
         if (onFrame) onFrame(record);
-        if (record.isSettled && probeLevels == options.probeLevels) break;
+        const bool hasLooked = probeLevels == options.probeLevels || !strategy.learnsWhatIsHidden();
+        if (record.isSettled && hasLooked) break;
         if (record.isSettled) probeLevels = options.probeLevels;
         // Nothing on its way: either the next frame asks for more, or tau control must act.
         if (record.missingPages > 0) static_cast<void>(streaming_.waitForArrival());

@@ -131,6 +131,8 @@ public:
         static_cast<void>(renderer_.render(camera, all, options));
     }
 
+    [[nodiscard]] bool learnsWhatIsHidden() const { return strategy_->learnsWhatIsHidden(); }
+
     hlod::FrameRecord live(const hlod::Camera& camera, const viewer::RenderOptions& options) {
         hlod::FrameRecord record = renderer_.renderLive(camera, *strategy_, options);
         notePeaks(record);
@@ -336,11 +338,14 @@ private:
         Judges judges(plan_, database_, source_);
         const auto every = static_cast<size_t>(plan_.truthEvery);
         eachFrame([&](size_t i, const hlod::Camera& camera) {
+            const bool isCompared = i % every == 0;
             std::vector<hlod::FrameRecord> records;
             for (auto& contestant : contestants_) {
+                // In between only those go on that learn from what they see.
+                if (!isCompared && !contestant->learnsWhatIsHidden()) continue;
                 records.push_back(contestant->live(camera, options_));
             }
-            if (i % every == 0) judge(judges, camera, records, i / every);
+            if (isCompared) judge(judges, camera, records, i / every);
         });
     }
 
