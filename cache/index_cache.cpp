@@ -1,5 +1,7 @@
 #include "cache/index_cache.h"
 
+#include "cache/kept_frames.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 namespace pagoda::cache {
 namespace {
 
-constexpr uint64_t kKeptFrames = 2;
 constexpr uint32_t kRootBlock = 0;
 constexpr uint64_t kNodeBytes = sizeof(ooc::NodeRecord) + sizeof(Box3d);
 // A record on disk is never longer than in memory, so that a block's bytes on disk tell a bound.
@@ -36,23 +37,42 @@ void IndexCache::beginFrame(uint64_t frameIndex) {
 
 const IndexCache::Block* IndexCache::block(uint32_t block, double priority) {
     if (const auto found = blocks_.find(block); found != blocks_.end()) {
-        found->second->lastFrame = frameIndex_;
-        return &found->second->block;
+        Entry& entry = *found->second;
+        entry.lastFrame = frameIndex_;
+        prefetched_.usedBytes += std::exchange(entry.prefetchedBytes, 0);
+        return &entry.block;
     }
-    if (broken_.contains(block)) return nullptr;
-    if (block >= source_.blockCount()) {
-        reportFault(block, "no such block");
-        return nullptr;
-    }
-    const ByteRange range = source_.blockRange(block);
-    if (boundBytes(range) > budgetBytes_ && block != kRootBlock) {
-        reportFault(block, fmt::format("takes {} bytes, more than the whole budget of {}",
-                                       boundBytes(range), budgetBytes_));
-        return nullptr;
-    }
-    Request request{{database_, true, block}, range, priority, false, {}};
+    if (!couldFit(block)) return nullptr;
+    const Request request{{database_, true, block}, source_.blockRange(block), priority, false, {}};
     if (requests_.ask(request)) ++missingBlocks_;
     return nullptr;
+}
+
+const IndexCache::Block* IndexCache::peek(uint32_t block) {
+    const auto found = blocks_.find(block);
+    if (found == blocks_.end()) return nullptr;
+    Entry& entry = *found->second;
+    entry.lastFrame = std::max(entry.lastFrame, spareFrame(frameIndex_));
+    return &entry.block;
+}
+
+void IndexCache::prefetch(uint32_t block, double priority) {
+    if (blocks_.contains(block) || !couldFit(block)) return;
+    requests_.ask({{database_, true, block}, source_.blockRange(block), priority, true, {}});
+}
+
+// Lists it as a fault when it never can.
+bool IndexCache::couldFit(uint32_t block) {
+    if (broken_.contains(block)) return false;
+    if (block >= source_.blockCount()) {
+        reportFault(block, "no such block");
+        return false;
+    }
+    const uint64_t bytes = boundBytes(source_.blockRange(block));
+    if (bytes <= budgetBytes_ || block == kRootBlock) return true;
+    reportFault(block, fmt::format("takes {} bytes, more than the whole budget of {}", bytes,
+                                   budgetBytes_));
+    return false;
 }
 
 IndexCache::BlockState IndexCache::state(uint32_t block) const {
@@ -65,21 +85,33 @@ void IndexCache::reportFault(uint32_t block, std::string what) {
     faults_.push_back({block, std::move(what)});
 }
 
-void IndexCache::evictUntil(uint64_t freeBytes) {
-    while (usedBytes() + freeBytes > budgetBytes_) {
-        auto oldest = blocks_.end();
-        for (auto entry = blocks_.begin(); entry != blocks_.end(); ++entry) {
-            if (entry->second->lastFrame + kKeptFrames >= frameIndex_) continue;
-            const bool isOlder =
-                oldest == blocks_.end() || std::pair(entry->second->lastFrame, ~entry->first) <
-                                               std::pair(oldest->second->lastFrame, ~oldest->first);
-            if (isOlder) oldest = entry;
-        }
-        if (oldest == blocks_.end()) return;
-        usedBytes_ -= oldest->second->bytes;
-        freeSlots_.push_back(oldest->second->block.firstSlot);
-        blocks_.erase(oldest);
+// Blocks last used before that frame go, oldest first. False, and nothing changes, if they are not
+// enough.
+bool IndexCache::makeRoom(uint64_t neededBytes, uint64_t beforeFrame) {
+    if (usedBytes() + neededBytes <= budgetBytes_) return true;
+    struct Candidate {
+        uint64_t lastFrame;
+        uint32_t block;
+    };
+    std::vector<Candidate> candidates;
+    uint64_t freeBytes = 0;
+    for (const auto& [number, entry] : blocks_) {
+        if (entry->lastFrame >= beforeFrame) continue;
+        candidates.push_back({entry->lastFrame, number});
+        freeBytes += entry->bytes;
     }
+    if (usedBytes() + neededBytes - freeBytes > budgetBytes_) return false;
+    std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+        return a.lastFrame != b.lastFrame ? a.lastFrame < b.lastFrame : a.block > b.block;
+    });
+    for (const Candidate& candidate : candidates) {
+        if (usedBytes() + neededBytes <= budgetBytes_) break;
+        const auto found = blocks_.find(candidate.block);
+        usedBytes_ -= found->second->bytes;
+        freeSlots_.push_back(found->second->block.firstSlot);
+        blocks_.erase(found);
+    }
+    return true;
 }
 
 // Ranges of one unit are used again; longer ones (no database has them) are not.
@@ -96,9 +128,10 @@ uint32_t IndexCache::takeSlots(uint32_t count) {
 
 bool IndexCache::admit(const Request& request) {
     const uint64_t bytes = boundBytes(request.range);
-    evictUntil(bytes);
+    const uint64_t before =
+        request.isPrefetch ? spareFrame(frameIndex_) : keepSinceFrame(frameIndex_);
     // The root's block is needed for anything to be drawn at all.
-    if (usedBytes() + bytes > budgetBytes_ && request.key.id != kRootBlock) return false;
+    if (!makeRoom(bytes, before) && request.key.id != kRootBlock) return false;
     reservedBytes_ += bytes;
     return true;
 }
@@ -119,6 +152,11 @@ void IndexCache::arrive(RequestQueue::Arrival& arrival) {
     }
     entry->bytes = nodes.size() * kNodeBytes;
     entry->lastFrame = frameIndex_;
+    if (arrival.request.isPrefetch) {
+        entry->lastFrame = spareFrame(frameIndex_);
+        entry->prefetchedBytes = arrival.request.range.bytes;
+        prefetched_.bytes += entry->prefetchedBytes;
+    }
     entry->block.firstSlot = takeSlots(static_cast<uint32_t>(nodes.size()));
     usedBytes_ += entry->bytes;
     ++loadedBlocks_;

@@ -5,6 +5,7 @@
 // thread only. Pointers stay valid until the next beginFrame().
 #pragma once
 
+#include "cache/prefetch_counts.h"
 #include "cache/request_queue.h"
 #include "ooc/lattice.h"
 
@@ -43,6 +44,11 @@ public:
     void beginFrame(uint64_t frameIndex);
     // Null when the block is absent (asked for) or broken (listed in faults() once).
     [[nodiscard]] const Block* block(uint32_t block, double priority = 0.0);
+    // Null when it is not there; neither asks for it nor uses it, but prefetches leave it in place.
+    [[nodiscard]] const Block* peek(uint32_t block);
+    // Asks for an absent block that nothing on the screen needs yet: after everything that is
+    // wanted. It takes only room that nobody used lately, and gives its own to the first want.
+    void prefetch(uint32_t block, double priority);
     [[nodiscard]] BlockState state(uint32_t block) const;
     // Lists a fault that the content of a block that was read has shown.
     void reportFault(uint32_t block, std::string what);
@@ -55,6 +61,7 @@ public:
     [[nodiscard]] uint64_t missingBlocks() const noexcept { return missingBlocks_; }  // this frame
     [[nodiscard]] size_t blockCount() const noexcept { return blocks_.size(); }
     [[nodiscard]] uint64_t loadedBlocks() const noexcept { return loadedBlocks_; }  // ever
+    [[nodiscard]] const PrefetchCount& prefetched() const noexcept { return prefetched_; }
     [[nodiscard]] uint64_t usedBytes() const noexcept { return usedBytes_ + reservedBytes_; }
     // Slots are below this.
     [[nodiscard]] uint32_t slotCount() const noexcept { return slotCount_; }
@@ -64,8 +71,10 @@ private:
         Block block;
         uint64_t lastFrame = 0;
         uint64_t bytes = 0;
+        uint64_t prefetchedBytes = 0;  // encoded; 0: it was wanted
     };
-    void evictUntil(uint64_t freeBytes);
+    [[nodiscard]] bool couldFit(uint32_t block);
+    [[nodiscard]] bool makeRoom(uint64_t neededBytes, uint64_t beforeFrame);
     [[nodiscard]] uint32_t takeSlots(uint32_t count);
 
     ooc::Lattice lattice_;
@@ -77,6 +86,7 @@ private:
     std::map<uint32_t, std::string> broken_;
     std::vector<uint32_t> freeSlots_;  // first slots of ranges, to be used again
     std::vector<BlockFault> faults_;
+    PrefetchCount prefetched_;
     uint64_t usedBytes_ = 0, reservedBytes_ = 0;
     uint64_t missingBlocks_ = 0, loadedBlocks_ = 0;
     uint32_t slotCount_ = 0;

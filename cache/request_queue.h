@@ -37,6 +37,7 @@ struct Request {
     double priority = 0;      // greater is sooner; prefetched ones come after all others
     bool isPrefetch = false;  // nothing that is on the screen needs it yet
     ooc::NodeRecord node{};   // of a page
+    uint8_t reason = 0;       // of a prefetch: the asker's own, < kPrefetchReasons
 };
 
 class RequestQueue {

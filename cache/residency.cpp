@@ -1,16 +1,16 @@
 #include "cache/residency.h"
 
+#include "cache/kept_frames.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <utility>
 
 namespace pagoda::cache {
 namespace {
-
-// What was used in this many frames before the current one is not evicted for something else.
-constexpr uint64_t kKeptFrames = 2;
 
 template <typename T>
 uint64_t bytesOf(const std::vector<T>& items) {
@@ -69,14 +69,8 @@ void Residency::dropAll() {
     dropFromGpu(evicted);
 }
 
-uint64_t Residency::keepSinceFrame() const {
-    return frameIndex_ > kKeptFrames ? frameIndex_ - kKeptFrames : 0;
-}
-
-// keep() marks with the frame before keepSinceFrame(): a prefetch leaves that in place too.
 uint64_t Residency::evictBeforeFrame(bool isPrefetch) const {
-    const uint64_t since = keepSinceFrame();
-    return isPrefetch ? since - std::min<uint64_t>(since, 1) : since;
+    return isPrefetch ? spareFrame(frameIndex_) : keepSinceFrame(frameIndex_);
 }
 
 void Residency::beginFrame(uint64_t frameIndex) {
@@ -152,7 +146,7 @@ bool Residency::uploadOne(PageId id, const ooc::Page& page) {
         return true;
     }
     // Prefetched, it is as old as what is kept, so that it is never in the way.
-    gpuLru_.insert(id, sizeBytes, isPrefetch ? evictBeforeFrame(true) : frameIndex_);
+    gpuLru_.insert(id, sizeBytes, isPrefetch ? spareFrame(frameIndex_) : frameIndex_);
     ++counters_.uploadedPages;
     counters_.bytesUploaded += sizeBytes;
     return true;
@@ -162,7 +156,7 @@ PageState Residency::want(const PageRequest& request, bool isStandIn) {
     const PageId id = request.id;
     if (!prefetched_.empty()) {
         if (const auto found = prefetched_.find(id); found != prefetched_.end()) {
-            counters_.usedPrefetchedBytes += found->second;
+            counters_.prefetch[found->second.reason].usedBytes += found->second.bytes;
             prefetched_.erase(found);
         }
     }
@@ -194,16 +188,17 @@ void Residency::demand(PageId id, uint64_t sizeBytes, bool isStandIn) {
 }
 
 void Residency::keep(PageId page, uint32_t slot) {
-    gpuLru_.refresh(page, keepSinceFrame(), slot);
+    gpuLru_.refresh(page, keepSinceFrame(frameIndex_), slot);
 }
 
-void Residency::prefetch(const PageRequest& request) {
+void Residency::prefetch(const PageRequest& request, uint8_t reason) {
+    assert(reason < kPrefetchReasons);
     if (gpuLru_.contains(request.id) || decoded_.contains(request.id) ||
         failed_.contains(request.id) || !couldFit(request)) {
         return;
     }
     requests_.ask(
-        {keyOf(request.id), pageRange(request.node), request.priority, true, request.node});
+        {keyOf(request.id), pageRange(request.node), request.priority, true, request.node, reason});
 }
 
 // Fails it when it never can.
@@ -254,7 +249,7 @@ void Residency::arrive(RequestQueue::Arrival& arrival) {
         ++counters_.reloadedPages;
         counters_.bytesReloaded += request.range.bytes;
     }
-    if (request.isPrefetch) counters_.prefetchedBytes += request.range.bytes;
+    if (request.isPrefetch) counters_.prefetch[request.reason].bytes += request.range.bytes;
     const uint64_t sizeBytes = decodedBytes(*arrival.result.page);
     if (sizeBytes > hostLru_.budgetBytes()) {  // longer than its record foretold
         fail(id, tooLarge(sizeBytes, "host", hostLru_.budgetBytes()));
@@ -265,7 +260,7 @@ void Residency::arrive(RequestQueue::Arrival& arrival) {
     dropFromHost(evicted);
     hostLru_.insert(id, sizeBytes, frameIndex_);
     decoded_.emplace(id, std::move(*arrival.result.page));
-    if (request.isPrefetch) prefetched_[id] = request.range.bytes;
+    if (request.isPrefetch) prefetched_[id] = {request.range.bytes, request.reason};
     toUpload_.of(request.isPrefetch) += reservation.gpuBytes;
     const uint64_t askedFrame = frameIndex_ - std::min(frameIndex_, arrival.framesSinceAsked);
     waiting_[id] = {askedFrame, request.priority};

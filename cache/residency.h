@@ -9,6 +9,7 @@
 
 #include "cache/gpu_pages.h"
 #include "cache/lru_pages.h"
+#include "cache/prefetch_counts.h"
 #include "cache/request_queue.h"
 
 #include <cstdint>
@@ -52,8 +53,7 @@ public:
         uint64_t evictedPages = 0;                      // from GPU memory, to make room
         uint64_t reloadedPages = 0, bytesReloaded = 0;  // read although read before
         uint64_t failedPages = 0;
-        uint64_t prefetchedBytes = 0;      // encoded, arrived before any frame wanted them
-        uint64_t usedPrefetchedBytes = 0;  // of them, wanted later and still there
+        PrefetchCounts prefetch{};
     };
 
     // `requests` and `gpu` outlive it.
@@ -72,8 +72,9 @@ public:
     // A page that would stand in for what is drawn: goes after all that is older, but is neither
     // pinned nor demanded, so that it never keeps the cut itself out.
     void keep(PageId page, uint32_t slot = LruPages::kNoSlot);
-    // Asks for what nothing on the screen needs yet: after everything that is wanted.
-    void prefetch(const PageRequest& request);
+    // Asks for what nothing on the screen needs yet: after everything that is wanted. `reason` (<
+    // kPrefetchReasons, asserted) is what it is counted by.
+    void prefetch(const PageRequest& request, uint8_t reason);
     [[nodiscard]] bool isResident(PageId page) const { return gpuLru_.contains(page); }
     [[nodiscard]] PageState state(PageId page, uint32_t slot = LruPages::kNoSlot) const {
         if (gpuLru_.contains(page, slot)) return PageState::Resident;
@@ -122,7 +123,6 @@ private:
     void fail(PageId id, std::string what);
     void dropFromGpu(std::vector<PageId>& evicted);
     void dropFromHost(std::vector<PageId>& evicted);
-    [[nodiscard]] uint64_t keepSinceFrame() const;
     [[nodiscard]] uint64_t evictBeforeFrame(bool isPrefetch) const;
 
     RequestQueue& requests_;
@@ -134,8 +134,11 @@ private:
     std::unordered_map<RequestKey, Reservation, RequestKeyHash> reserved_;  // sent for
     std::unordered_set<PageId, PageIdHash> failed_;
     std::unordered_set<PageId, PageIdHash> everLoaded_;
-    // In memory and not yet wanted: encoded bytes.
-    std::unordered_map<PageId, uint64_t, PageIdHash> prefetched_;
+    struct Prefetched {
+        uint64_t bytes = 0;  // encoded
+        uint8_t reason = 0;
+    };
+    std::unordered_map<PageId, Prefetched, PageIdHash> prefetched_;  // in memory, not yet wanted
     std::vector<PageFault> faults_;
     Coming sent_;                                      // sent for
     Coming toUpload_;                                  // waiting to be uploaded

@@ -69,6 +69,12 @@ uint64_t Streaming::missing() const {
     return count;
 }
 
+PrefetchCount Streaming::prefetchedBlocks() const {
+    PrefetchCount count;
+    for (const auto& index : indexes_) count += index->prefetched();
+    return count;
+}
+
 uint64_t Streaming::indexBytes() const {
     uint64_t bytes = 0;
     for (const auto& index : indexes_) bytes += index->usedBytes();

@@ -52,6 +52,8 @@ public:
     // Pages and blocks that the last frame wanted and did not have.
     [[nodiscard]] uint64_t missing() const;
     [[nodiscard]] uint64_t indexBytes() const;
+    // Index blocks read ahead, of all databases.
+    [[nodiscard]] PrefetchCount prefetchedBlocks() const;
     [[nodiscard]] uint64_t hostBytes() const { return residency_.hostUsedBytes() + indexBytes(); }
 
 private:

@@ -27,12 +27,16 @@ LoadResult decodeItem(const PageSource& source, const LoadItem& item,
 
 namespace {
 
+// A sleeper is woken for what has arrived at once after so long; sooner only when work runs out.
+constexpr std::chrono::microseconds kLongestBatch{500};
+
 // Empty when done, else why not. Sizes come from a file: one that lies must not end the program.
+// The buffer never shrinks: growing it again would fill it with zeros for each read.
 std::string readInto(std::vector<std::byte>& buffer, const PageSource& source, uint64_t offset,
                      uint64_t bytes) {
     try {
-        buffer.resize(bytes);
-        return source.read(offset, buffer);
+        if (buffer.size() < bytes) buffer.resize(bytes);
+        return source.read(offset, std::span(buffer).first(bytes));
     } catch (const std::exception&) {
         buffer.clear();
         return "not enough memory to read it";
@@ -51,8 +55,8 @@ LoadResult decodeSafely(const PageSource& source, const LoadItem& item,
 }  // namespace
 
 ThreadLoads::ThreadLoads(std::vector<const PageSource*> sources, size_t threadCount)
-    : sources_(std::move(sources)) {
-    for (size_t i = 0; i < std::max<size_t>(threadCount, 1); ++i) {
+    : sources_(std::move(sources)), threadCount_(std::max<size_t>(threadCount, 1)) {
+    for (size_t i = 0; i < threadCount_; ++i) {
         threads_.emplace_back([this] { work(); });
     }
 }
@@ -84,9 +88,17 @@ void ThreadLoads::collect(std::vector<LoadResult>& arrived) {
 
 bool ThreadLoads::waitForArrival() {
     std::unique_lock lock(queueMutex_);
+    waitingSince_ = Time::now();
     hasArrivals_.wait(lock,
                       [this] { return !arrived_.empty() || (queue_.empty() && reading_ == 0); });
+    waitingSince_.reset();
     return !arrived_.empty();
+}
+
+// While enough reads are queued, more is about to arrive: who sleeps is woken for all of it.
+bool ThreadLoads::isWorthWaking() const {
+    if (!waitingSince_) return false;
+    return queue_.size() <= threadCount_ / 2 || Time::now() - *waitingSince_ >= kLongestBatch;
 }
 
 size_t ThreadLoads::readsInFlight() const {
@@ -128,12 +140,14 @@ void ThreadLoads::load(const std::vector<LoadItem>& items, std::vector<std::byte
             result = own.empty() ? decodeSafely(source, item, alone)
                                  : LoadResult{item.ticket, {}, {}, std::move(own)};
         }
+        bool doesWake = false;
         {
             const std::lock_guard lock(queueMutex_);
             arrived_.push_back(std::move(result));
             if (&item == &items.back()) --reading_;
+            doesWake = isWorthWaking();
         }
-        hasArrivals_.notify_all();
+        if (doesWake) hasArrivals_.notify_one();
     }
 }
 

@@ -37,7 +37,8 @@ viewer::RendererOptions RuntimeOptions::rendererOptions() const {
     options.gpuBytes = parseBytes(gpuBudget);
     options.uploadBytesPerFrame = uploadBudget.empty() ? 0 : parseBytes(uploadBudget);
     options.queryLatencyFrames = queryLatencyFrames;
-    options.doesPrefetch = prefetch == "on";
+    options.prefetchReasons = *hlod::parsePrefetchReasons(prefetch);
+    options.doesPrefetch = options.prefetchReasons.any();
     options.disk = cache::parseDiskProfile(disk);
     if (pyramid == "cpu") options.pyramid.place = viewer::PyramidPlace::Cpu;
     if (pyramid == "gpu") options.pyramid.place = viewer::PyramidPlace::Gpu;
@@ -70,6 +71,11 @@ std::vector<std::string> strategyNames() {
 }
 
 void addRuntimeOptions(CLI::App& command, RuntimeOptions& options) {
+    const auto isPrefetch = [](const std::string& text) -> std::string {
+        if (hlod::parsePrefetchReasons(text)) return {};
+        return "'" + text +
+               "' is no reason to read ahead; write on, off, or reasons such as near,refine";
+    };
     command.add_option("--bias", options.bias,
                        "How much hidden parts lower the error of a node: S,T[,FLOOR] in [0, 1], or "
                        "paper (1,0.5,0 and nothing beyond the paper) (default: 1,1,0.015625)");
@@ -94,8 +100,9 @@ void addRuntimeOptions(CLI::App& command, RuntimeOptions& options) {
                        "Bytes uploaded a frame at most (default: no bound)");
     command
         .add_option("--prefetch", options.prefetch,
-                    "Read ahead what the camera's motion foretells, as far as that pays: on or off")
-        ->check(CLI::IsMember({"on", "off"}))
+                    "Read ahead what the camera's motion foretells, as far as that pays: on, off, "
+                    "or some of near,refine,enter,uncover")
+        ->check(isPrefetch)
         ->capture_default_str();
     command
         .add_option("--pyramid", options.pyramid,

@@ -14,36 +14,10 @@
 namespace pagoda::viewer {
 namespace {
 
-// A range starts at a whole vertex and a whole word, and gaps are never shorter than this.
-constexpr uint64_t kGranuleBytes = 64 * sizeof(GpuVertex);
+using cache::GpuPageLayout;
+
 constexpr uint64_t kChunkBytes = uint64_t{32} << 20;
-constexpr size_t kMaxVertices = 65536;  // of a 16-bit index
-
-struct Counts {
-    size_t vertices = 0, indices = 0, faceNormals = 0;
-    [[nodiscard]] size_t vertexBytes() const { return vertices * sizeof(GpuVertex); }
-    // Rounded up to the words of the normals behind them.
-    [[nodiscard]] size_t indexBytes() const { return (indices * sizeof(uint16_t) + 3) / 4 * 4; }
-    [[nodiscard]] size_t bytes() const {
-        return vertexBytes() + indexBytes() + faceNormals * sizeof(uint32_t);
-    }
-};
-
-bool needsFaceNormals(const ooc::Page& page) {
-    const std::vector<ooc::OctNormal>& normals = page.mesh.normals;
-    return normals.empty() || !page.zippers.empty() ||
-           std::any_of(normals.begin(), normals.end(), [](ooc::OctNormal n) { return n.isNone(); });
-}
-
-Counts countOf(const ooc::Page& page) {
-    Counts counts{page.mesh.positions.size(), page.mesh.indices.size(), 0};
-    for (const ooc::Zipper& zipper : page.zippers) {
-        counts.vertices += zipper.positions.size();
-        counts.indices += zipper.indices.size();
-    }
-    if (needsFaceNormals(page)) counts.faceNormals = counts.indices / 3;
-    return counts;
-}
+static_assert(sizeof(GpuVertex) == GpuPageLayout::kVertexBytes);
 
 // Octahedral, 16 bits each, as GLSL's unpackSnorm2x16 reads it. From integers, so that it depends
 // on neither the eye nor the size of a pixel, as screen-space derivatives would.
@@ -91,9 +65,9 @@ GpuVertex makeVertex(const Vec3i& position, const Vec3i& origin, uint32_t colour
 
 class Packer {
 public:
-    Packer(std::vector<std::byte>& bytes, const Counts& counts, const Vec3i& origin)
-        : counts_(counts), origin_(origin), bytes_(bytes) {
-        bytes_.assign(counts.bytes(), std::byte{0});
+    Packer(std::vector<std::byte>& bytes, const GpuPageLayout& layout, const Vec3i& origin)
+        : layout_(layout), origin_(origin), bytes_(bytes) {
+        bytes_.assign(layout.bytes(), std::byte{0});
     }
     void addVertex(const Vec3i& position, uint32_t colour, ooc::OctNormal normal) {
         put(addedVertices_++ * sizeof(GpuVertex), makeVertex(position, origin_, colour, normal));
@@ -101,11 +75,11 @@ public:
     void addTriangles(const std::vector<Vec3i>& positions, const std::vector<uint32_t>& indices,
                       size_t firstVertex) {
         for (const uint32_t index : indices) {
-            put(counts_.vertexBytes() + addedIndices_++ * sizeof(uint16_t),
+            put(layout_.vertexBytes() + addedIndices_++ * sizeof(uint16_t),
                 static_cast<uint16_t>(firstVertex + index));
         }
-        if (counts_.faceNormals == 0) return;
-        const size_t firstNormal = counts_.vertexBytes() + counts_.indexBytes();
+        if (layout_.faceNormals == 0) return;
+        const size_t firstNormal = layout_.vertexBytes() + layout_.indexBytes();
         for (size_t i = 0; i + 2 < indices.size(); i += 3) {
             put(firstNormal + addedNormals_++ * sizeof(uint32_t),
                 faceNormal(positions[indices[i]], positions[indices[i + 1]],
@@ -119,7 +93,7 @@ private:
     void put(size_t offset, const T& value) {
         std::memcpy(bytes_.data() + offset, &value, sizeof value);
     }
-    Counts counts_;
+    GpuPageLayout layout_;
     size_t addedVertices_ = 0, addedIndices_ = 0, addedNormals_ = 0;
     Vec3i origin_;
     std::vector<std::byte>& bytes_;
@@ -138,13 +112,14 @@ void keepTranslucent(const ooc::PageMesh& mesh, GpuPage& page) {
     }
 }
 
-GpuPage pack(const ooc::Page& source, const Counts& counts, std::vector<std::byte>& staging) {
+GpuPage pack(const ooc::Page& source, const GpuPageLayout& layout,
+             std::vector<std::byte>& staging) {
     const ooc::PageMesh& mesh = source.mesh;
     GpuPage page;
     page.origin = mesh.positions.empty() ? Vec3i(0) : mesh.box().min;
     page.meshTriangles = mesh.triangleCount();
     page.opaqueTriangles = mesh.opaqueTriangleCount();
-    Packer packer(staging, counts, page.origin);
+    Packer packer(staging, layout, page.origin);
     for (size_t i = 0; i < mesh.positions.size(); ++i) {
         packer.addVertex(mesh.positions[i],
                          mesh.colours.empty() ? mesh.constantColour : mesh.colours[i],
@@ -168,15 +143,11 @@ GpuPage pack(const ooc::Page& source, const Counts& counts, std::vector<std::byt
 }  // namespace
 
 uint64_t MeshStore::sizeBytes(const ooc::Page& page) const {
-    const uint64_t granules = (countOf(page).bytes() + kGranuleBytes - 1) / kGranuleBytes;
-    return std::max(granules, uint64_t{1}) * kGranuleBytes;
+    return cache::gpuLayoutOf(page).sizeBytes();
 }
 
 uint64_t MeshStore::sizeBytes(const ooc::NodeRecord& node) const {
-    // A page with normals may still have triangles without: their face normals are counted.
-    const Counts counts{node.vertexCount, size_t{3} * node.triangleCount, node.triangleCount};
-    const uint64_t granules = (counts.bytes() + kGranuleBytes - 1) / kGranuleBytes;
-    return std::max(granules, uint64_t{1}) * kGranuleBytes;
+    return cache::gpuLayoutOf(node).sizeBytes();
 }
 
 std::optional<MeshStore::Place> MeshStore::allocate(uint64_t sizeBytes) {
@@ -185,7 +156,7 @@ std::optional<MeshStore::Place> MeshStore::allocate(uint64_t sizeBytes) {
             return Place{chunk, *offset};
     }
     const uint64_t capacity = std::min(kChunkBytes, budgetBytes_ - chunkBytes_);
-    cache::Arena arena(capacity, kGranuleBytes);
+    cache::Arena arena(capacity, GpuPageLayout::kGranuleBytes);
     if (arena.capacityBytes() < sizeBytes) return std::nullopt;
     GlBuffer buffer = makeBuffer();
     glNamedBufferStorage(buffer.id(), static_cast<GLsizeiptr>(arena.capacityBytes()), nullptr,
@@ -197,19 +168,20 @@ std::optional<MeshStore::Place> MeshStore::allocate(uint64_t sizeBytes) {
 }
 
 MeshStore::Upload MeshStore::upload(cache::PageId id, const ooc::Page& page) {
-    const Counts counts = countOf(page);
-    const uint64_t neededBytes = sizeBytes(page);
-    if (counts.vertices > kMaxVertices || neededBytes > kChunkBytes) return Upload::Refused;
+    const GpuPageLayout layout = cache::gpuLayoutOf(page);
+    const uint64_t neededBytes = layout.sizeBytes();
+    if (layout.vertices > GpuPageLayout::kMaxVertices || neededBytes > kChunkBytes)
+        return Upload::Refused;
     auto place = allocate(neededBytes);
     if (!place && compactFor(neededBytes)) place = allocate(neededBytes);
     if (!place) return Upload::NoRoom;
-    GpuPage packed = pack(page, counts, staging_);
-    const uint64_t firstIndexByte = place->offset + counts.vertexBytes();
+    GpuPage packed = pack(page, layout, staging_);
+    const uint64_t firstIndexByte = place->offset + layout.vertexBytes();
     packed.chunk = place->chunk;
     packed.baseVertex = static_cast<uint32_t>(place->offset / sizeof(GpuVertex));
     packed.firstIndex = static_cast<uint32_t>(firstIndexByte / sizeof(uint16_t));
-    if (counts.faceNormals > 0) {
-        packed.firstNormal = static_cast<uint32_t>((firstIndexByte + counts.indexBytes()) / 4);
+    if (layout.faceNormals > 0) {
+        packed.firstNormal = static_cast<uint32_t>((firstIndexByte + layout.indexBytes()) / 4);
     }
     if (!staging_.empty()) {
         glNamedBufferSubData(buffer(place->chunk), static_cast<GLintptr>(place->offset),
@@ -250,7 +222,7 @@ void MeshStore::compact(size_t chunk) {
     std::sort(entries.begin(), entries.end(),
               [](const Entry* a, const Entry* b) { return a->offset < b->offset; });
     glFinish();  // llvmpipe 22.3 does not order the copies behind shaders that read from the buffer
-    cache::Arena packed(chunks_[chunk].arena.capacityBytes(), kGranuleBytes);
+    cache::Arena packed(chunks_[chunk].arena.capacityBytes(), GpuPageLayout::kGranuleBytes);
     for (Entry* entry : entries) move(*entry, *packed.allocate(entry->bytes));
     chunks_[chunk].arena = std::move(packed);
     throwOnGlError("moving pages");
@@ -272,6 +244,12 @@ void MeshStore::move(Entry& entry, uint64_t toOffset) {
     if (entry.page.firstNormal != GpuPage::kNoNormals) {
         entry.page.firstNormal -= static_cast<uint32_t>(way / sizeof(uint32_t));
     }
+}
+
+uint64_t MeshStore::usedBytes() const {
+    uint64_t bytes = 0;
+    for (const Chunk& chunk : chunks_) bytes += chunk.arena.usedBytes();
+    return bytes;
 }
 
 const GpuPage& MeshStore::page(cache::PageId id) const {

@@ -51,6 +51,7 @@ public:
     // The page was uploaded (asserted). Valid until it is dropped.
     [[nodiscard]] const GpuPage& page(cache::PageId id) const;
     [[nodiscard]] bool contains(cache::PageId id) const { return pages_.contains(id); }
+    [[nodiscard]] uint64_t usedBytes() const;  // of all pages; never above budget
     [[nodiscard]] GlId buffer(size_t chunk) const { return chunks_[chunk].buffer.id(); }
 
 private:

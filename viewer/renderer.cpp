@@ -47,6 +47,7 @@ Renderer::Renderer(const ooc::Lattice& lattice, const cache::PageSource& source,
       tree_(lattice, streaming_.index()),
       runner_(streaming_, tree_, device_, options.queryLatencyFrames) {
     runner_.setPrefetch(options.doesPrefetch);
+    runner_.prefetcher().setReasons(options.prefetchReasons);
     static_cast<void>(runner_.root());
 }
 

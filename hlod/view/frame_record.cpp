@@ -1,8 +1,26 @@
 #include "hlod/view/frame_record.h"
 
+#include "hlod/view/prefetch.h"
+
 #include <nlohmann/json.hpp>
 
 namespace pagoda::hlod {
+namespace {
+
+nlohmann::ordered_json toJson(const cache::PrefetchCount& count) {
+    return {{"bytes", count.bytes}, {"used", count.usedBytes}};
+}
+
+nlohmann::ordered_json prefetchJson(const FrameRecord& record) {
+    nlohmann::ordered_json json;
+    for (size_t i = 0; i < record.prefetch.size(); ++i) {
+        json[kPrefetchReasonNames[i]] = toJson(record.prefetch[i]);
+    }
+    json["blocks"] = toJson(record.prefetchedBlocks);
+    return json;
+}
+
+}  // namespace
 
 std::string frameRecordToJson(const FrameRecord& record) {
     const PredictionCounts& predictions = record.predictions;
@@ -42,8 +60,9 @@ std::string frameRecordToJson(const FrameRecord& record) {
         {"bytes_uploaded", record.bytesUploaded},
         {"evicted_pages", record.evictedPages},
         {"reloaded_pages", record.reloadedPages},
-        {"prefetched_bytes", record.prefetchedBytes},
-        {"used_prefetched_bytes", record.usedPrefetchedBytes},
+        {"prefetched_bytes", sumOf(record.prefetch).bytes},
+        {"used_prefetched_bytes", sumOf(record.prefetch).usedBytes},
+        {"prefetch", prefetchJson(record)},
         {"prefetch_off", record.prefetchOff},
         {"index_blocks", record.indexBlocks},
         {"index_bytes", record.indexBytes},

@@ -2,6 +2,8 @@
 // Lines marked (strategy) are counted by the strategy, all others by who runs the frame.
 #pragma once
 
+#include "cache/prefetch_counts.h"
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -44,8 +46,9 @@ struct FrameRecord {
     uint64_t demandBytes = 0;   // GPU bytes of the whole cut, there or not
     uint64_t loadedPages = 0, bytesRead = 0, bytesUploaded = 0;
     uint64_t evictedPages = 0, reloadedPages = 0;
-    uint64_t prefetchedBytes = 0, usedPrefetchedBytes = 0;  // arrived unwanted; wanted since
-    std::string prefetchOff;  // what is not read ahead because it does not pay
+    cache::PrefetchCounts prefetch{};       // pages read ahead, by PrefetchReason
+    cache::PrefetchCount prefetchedBlocks;  // index blocks read ahead
+    std::string prefetchOff;                // what is not read ahead because it does not pay
     uint64_t indexBlocks = 0, indexBytes = 0;
     uint64_t gpuBytes = 0, hostBytes = 0;
 

@@ -115,7 +115,7 @@ FrameRunner::Progress FrameRunner::progress() {
 FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
                              const FrameOptions& options) {
     const double beginMs = nowMs(), beginCpuMs = processCpuMs();
-    const cache::Residency::Counters before = streaming_.residency().counters();
+    const Counts before = counts();
     FrameRecord record;
     streaming_.beginFrame();
     record.frameIndex = streaming_.frameIndex();
@@ -216,9 +216,14 @@ bool FrameRunner::controlTau(const Camera& camera, const Strategy& strategy,
     return tauControl_.fits() || isLearning;
 }
 
-void FrameRunner::account(FrameRecord& record, const cache::Residency::Counters& before) {
+FrameRunner::Counts FrameRunner::counts() const {
+    return {streaming_.residency().counters(), streaming_.prefetchedBlocks()};
+}
+
+void FrameRunner::account(FrameRecord& record, const Counts& countsBefore) {
     const cache::Residency& residency = streaming_.residency();
     const cache::Residency::Counters& after = residency.counters();
+    const cache::Residency::Counters& before = countsBefore.pages;
     record.missingPages = streaming_.missing();
     record.demandBytes = residency.demandBytes();
     record.loadedPages = after.loadedPages - before.loadedPages;
@@ -226,8 +231,10 @@ void FrameRunner::account(FrameRecord& record, const cache::Residency::Counters&
     record.bytesUploaded = after.bytesUploaded - before.bytesUploaded;
     record.evictedPages = after.evictedPages - before.evictedPages;
     record.reloadedPages = after.reloadedPages - before.reloadedPages;
-    record.prefetchedBytes = after.prefetchedBytes - before.prefetchedBytes;
-    record.usedPrefetchedBytes = after.usedPrefetchedBytes - before.usedPrefetchedBytes;
+    for (size_t i = 0; i < record.prefetch.size(); ++i) {
+        record.prefetch[i] = after.prefetch[i].since(before.prefetch[i]);
+    }
+    record.prefetchedBlocks = streaming_.prefetchedBlocks().since(countsBefore.prefetchedBlocks);
     record.indexBlocks = streaming_.index().blockCount();
     record.indexBytes = streaming_.indexBytes();
     record.gpuBytes = residency.gpuUsedBytes();
@@ -245,7 +252,7 @@ FrameRecord FrameRunner::settle(const Camera& camera, Strategy& strategy,
                                 const FrameOptions& options,
                                 const std::function<void(const FrameRecord&)>& onFrame) {
     FrameRecord record;
-    const cache::Residency::Counters before = streaming_.residency().counters();
+    const Counts before = counts();
     int completeFrames = 0;
     // Who waits anyway reads least: what is nearer is there before what it may hide is asked for.
     // A live frame must find nothing to do afterwards.

@@ -38,7 +38,7 @@ public:
 
     // Reads ahead along the camera's motion (prefetch.h). Off at first.
     void setPrefetch(bool isOn) { doesPrefetch_ = isOn; }
-    [[nodiscard]] const Prefetcher& prefetcher() const noexcept { return prefetcher_; }
+    [[nodiscard]] Prefetcher& prefetcher() noexcept { return prefetcher_; }
 
     // Blocks until the root's record is there. Throws Error when it cannot be read.
     [[nodiscard]] Node root();
@@ -61,7 +61,12 @@ private:
     // May what is missing be sent for?
     [[nodiscard]] bool controlTau(const Camera& camera, const Strategy& strategy,
                                   const FrameOptions& options);
-    void account(FrameRecord& record, const cache::Residency::Counters& before);
+    struct Counts {
+        cache::Residency::Counters pages;
+        cache::PrefetchCount prefetchedBlocks;
+    };
+    [[nodiscard]] Counts counts() const;
+    void account(FrameRecord& record, const Counts& before);
 
     cache::Streaming& streaming_;
     NodeTree& tree_;

@@ -39,11 +39,24 @@ std::optional<Node> NodeTree::root() {
 }
 
 NodeRange NodeTree::children(const Node& node, double priority) {
+    if (node.record->childCount() == 0) return {};
+    return childrenIn(index_.block(node.record->childBlock, priority), node);
+}
+
+NodeRange NodeTree::residentChildren(const Node& node) {
+    if (node.record->childCount() == 0) return {};
+    return childrenIn(index_.peek(node.record->childBlock), node);
+}
+
+void NodeTree::prefetchChildren(const Node& node, double priority) {
+    if (node.record->childCount() > 0) index_.prefetch(node.record->childBlock, priority);
+}
+
+// Checked: what is not as the record says is a fault of the block.
+NodeRange NodeTree::childrenIn(const cache::IndexCache::Block* block, const Node& node) {
+    if (block == nullptr) return {};
     const ooc::NodeRecord& record = *node.record;
     const uint32_t count = record.childCount();
-    if (count == 0) return {};
-    const cache::IndexCache::Block* block = index_.block(record.childBlock, priority);
-    if (block == nullptr) return {};
     const size_t available = block->index.nodes.size();
     if (record.childIndex > available || count > available - record.childIndex) {
         index_.reportFault(record.childBlock, "children are beyond the end of the block");
@@ -55,14 +68,6 @@ NodeRange NodeTree::children(const Node& node, double priority) {
         return {};
     }
     return {*block, record.childIndex, count, database_};
-}
-
-NodeRange NodeTree::residentChildren(const Node& node) {
-    if (node.record->childCount() == 0 ||
-        index_.state(node.record->childBlock) != cache::IndexCache::BlockState::Resident) {
-        return {};
-    }
-    return children(node);
 }
 
 }  // namespace pagoda::hlod

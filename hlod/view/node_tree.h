@@ -55,13 +55,17 @@ public:
     // Empty for a leaf, and for a node whose children cannot be had: their block is on its way
     // (`priority` as in FrameSink::want), or broken (the index cache lists why).
     [[nodiscard]] NodeRange children(const Node& node, double priority = 0.0);
-    // The same, but what is not there is not asked for.
+    // The same, but what is not there is not asked for, and what is there is not used.
     [[nodiscard]] NodeRange residentChildren(const Node& node);
+    // Asks for the block of its children, if that is absent, after everything that is wanted.
+    void prefetchChildren(const Node& node, double priority);
     [[nodiscard]] const ooc::Lattice& lattice() const noexcept { return lattice_; }
     // Slots of nodes are below this.
     [[nodiscard]] uint32_t slotCount() const noexcept { return index_.slotCount(); }
 
 private:
+    [[nodiscard]] NodeRange childrenIn(const cache::IndexCache::Block* block, const Node& node);
+
     ooc::Lattice lattice_;
     cache::IndexCache& index_;
     uint32_t database_;

@@ -21,15 +21,17 @@ constexpr double kNewest = 0.5;  // weight of the last frame's motion in the mea
 constexpr double kGoesOn = 0.9;  // of its velocity is left a frame later
 // What is not wanted within so many frames was foretold in vain.
 constexpr uint64_t kSoonFrames = 30;
-constexpr double kPaysAbove = 0.3;      // chosen, not tuned
-constexpr double kPriorBytes = 64e3;    // how much a reason is believed before it was tried
-constexpr double kForget = 1.0 / 1e6;   // a byte later: the last megabyte counts
+constexpr double kPaysAbove = 0.3;     // chosen, not tuned
+constexpr double kPriorBytes = 64e3;   // how much a reason is believed before it was tried
+constexpr double kForget = 1.0 / 1e6;  // a byte later: the last megabyte counts
+// Of the picture, that a hidden box fills: smaller ones seldom come out whole, and cost few pixels
+// when they do (docs/decisions.md).
+constexpr double kLeastUncoveredShare = 0.1;
 constexpr double kMaxLookAhead = 12.0;  // frames: motion tells no more
 constexpr uint32_t kMaxVisits = 20'000;
 
-constexpr std::array<const char*, kPrefetchReasons> kNames = {"near", "refine", "enter", "uncover"};
 // Before anything was measured.
-constexpr std::array<double, kPrefetchReasons> kPrior = {0.8, 0.5, 0.4, 0.3};
+constexpr std::array<double, cache::kPrefetchReasons> kPrior = {0.8, 0.5, 0.4, 0.3};
 
 size_t at(PrefetchReason reason) {
     return static_cast<size_t>(reason);
@@ -41,7 +43,27 @@ double roughPixels(const View& view, const Box3d& box) {
     return std::min(sidePx * sidePx, 1.0 * view.camera().widthPx * view.camera().heightPx);
 }
 
+bool isLargeEnoughToUncover(const View& view, const Box3d& box) {
+    const double pixels = 1.0 * view.camera().widthPx * view.camera().heightPx;
+    return roughPixels(view, box) >= kLeastUncoveredShare * pixels;
+}
+
 }  // namespace
+
+std::optional<PrefetchReasons> parsePrefetchReasons(std::string_view text) {
+    if (text == "on") return PrefetchReasons().set();
+    PrefetchReasons reasons;
+    if (text == "off") return reasons;
+    while (true) {
+        const size_t comma = text.find(',');
+        const auto name = std::find(kPrefetchReasonNames.begin(), kPrefetchReasonNames.end(),
+                                    text.substr(0, comma));
+        if (name == kPrefetchReasonNames.end()) return std::nullopt;
+        reasons.set(static_cast<size_t>(name - kPrefetchReasonNames.begin()));
+        if (comma == std::string_view::npos) return reasons;
+        text.remove_prefix(comma + 1);
+    }
+}
 
 void CameraMotion::note(const Camera& camera, const Box3d& sceneBox) {
     const std::optional<Camera> before = std::exchange(last_, camera);
@@ -145,10 +167,10 @@ bool Prefetcher::pays(PrefetchReason reason) const {
 
 std::string Prefetcher::offText() const {
     std::string text;
-    for (size_t i = 0; i < kPrefetchReasons; ++i) {
+    for (size_t i = 0; i < cache::kPrefetchReasons; ++i) {
         const auto reason = static_cast<PrefetchReason>(i);
         if (pays(reason)) continue;
-        text += fmt::format("{}{} {:.0f}%", text.empty() ? "" : ", ", kNames[i],
+        text += fmt::format("{}{} {:.0f}%", text.empty() ? "" : ", ", kPrefetchReasonNames[i],
                             100.0 * precision(reason));
     }
     return text;
@@ -195,7 +217,9 @@ void Prefetcher::visit(Walk& walk, const Node& node) {
         below(walk, node, isNear ? PrefetchReason::Near : PrefetchReason::Refine);
     } else if (what == What::Hidden) {
         if (isNear) return below(walk, node, PrefetchReason::Near);
-        foretell(walk, node, PrefetchReason::Uncover);
+        if (isLargeEnoughToUncover(walk.then, *node.boxModel)) {
+            foretell(walk, node, PrefetchReason::Uncover);
+        }
     } else if (!walk.now.intersectsFrustum(*node.boxModel)) {
         below(walk, node, isNear ? PrefetchReason::Near : PrefetchReason::Enter);
     }
@@ -210,6 +234,7 @@ void Prefetcher::below(Walk& walk, const Node& node, PrefetchReason reason) {
     if (isCut || reason == PrefetchReason::Near) foretell(walk, node, reason);
     if (isCut) return;
     const NodeRange children = walk.tree.residentChildren(node);
+    if (children.empty()) return foretellChildren(walk, node, reason);
     for (uint32_t i = 0; i < children.size(); ++i) {
         const bool isNear = crossesNear(walk.then, *children[i].boxModel);
         // Only what holds the eye is seen for sure.
@@ -224,9 +249,23 @@ void Prefetcher::foretell(Walk& walk, const Node& node, PrefetchReason reason) {
     const auto [found, isNew] =
         foretold_.try_emplace(page, Foretold{reason, frame_, node.record->pageBytes});
     if (isNew) byAge_.emplace_back(frame_, page);
-    if (!pays(reason)) return;
-    const double pixels = roughPixels(walk.then, *node.boxModel);
-    walk.residency.prefetch({page, *node.record, pixels * precision(reason)});
+    if (!isReadFor(reason)) return;
+    walk.residency.prefetch({page, *node.record, priority(walk, node, reason)},
+                            static_cast<uint8_t>(reason));
+}
+
+// What is below cannot be foretold before its block is there: without it, each level of blocks
+// would cost a load when the eye comes.
+void Prefetcher::foretellChildren(Walk& walk, const Node& node, PrefetchReason reason) {
+    if (isReadFor(reason)) walk.tree.prefetchChildren(node, priority(walk, node, reason));
+}
+
+bool Prefetcher::isReadFor(PrefetchReason reason) const {
+    return reasons_.test(at(reason)) && pays(reason);
+}
+
+double Prefetcher::priority(const Walk& walk, const Node& node, PrefetchReason reason) const {
+    return roughPixels(walk.then, *node.boxModel) * precision(reason);
 }
 
 }  // namespace pagoda::hlod

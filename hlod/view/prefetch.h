@@ -10,10 +10,12 @@
 #include "hlod/view/node_tree.h"
 
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <deque>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -41,10 +43,17 @@ enum class PrefetchReason : uint8_t {
     Enter,   // comes into the frustum
     Uncover  // proved hidden, and may come out
 };
-inline constexpr size_t kPrefetchReasons = 4;
+using PrefetchReasons = std::bitset<cache::kPrefetchReasons>;
+inline constexpr std::array<const char*, cache::kPrefetchReasons> kPrefetchReasonNames = {
+    "near", "refine", "enter", "uncover"};
+
+// "on", "off" or reasons by name, joined by commas. Nothing for any other text.
+[[nodiscard]] std::optional<PrefetchReasons> parsePrefetchReasons(std::string_view text);
 
 class Prefetcher {
 public:
+    // For these alone is anything read; all of them go on being scored. All at first.
+    void setReasons(PrefetchReasons reasons) { reasons_ = reasons; }
     // Of what the frame tells; each is one store.
     void beginFrame(uint64_t frameIndex, const NodeTree& tree);
     void noteWant(const Node& node, bool isResident);
@@ -88,14 +97,18 @@ private:
     void visit(Walk& walk, const Node& node);
     void below(Walk& walk, const Node& node, PrefetchReason reason);
     void foretell(Walk& walk, const Node& node, PrefetchReason reason);
+    void foretellChildren(Walk& walk, const Node& node, PrefetchReason reason);
+    [[nodiscard]] bool isReadFor(PrefetchReason reason) const;
+    [[nodiscard]] double priority(const Walk& walk, const Node& node, PrefetchReason reason) const;
 
     using Pages = std::unordered_map<cache::PageId, uint64_t, cache::PageIdHash>;
+    PrefetchReasons reasons_ = PrefetchReasons().set();
     uint64_t frame_ = 0;
     CameraMotion motion_;
     std::vector<Mark> marks_;
     std::unordered_map<cache::PageId, Foretold, cache::PageIdHash> foretold_;
     std::deque<std::pair<uint64_t, cache::PageId>> byAge_;
-    std::array<Score, kPrefetchReasons> scores_{};
+    std::array<Score, cache::kPrefetchReasons> scores_{};
     Pages missingSince_;
     double latencyFrames_ = 1.0;  // of loads, lately
 };

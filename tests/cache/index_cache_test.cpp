@@ -31,13 +31,17 @@ struct Index {
         requests.collect(arrivals);
         for (RequestQueue::Arrival& arrival : arrivals) index.arrive(arrival);
     }
-    // A frame that looks at these, the first most urgent.
-    void frame(const std::vector<uint32_t>& blocks) {
+    // A frame that looks at these, the first most urgent, and reads those ahead.
+    void frame(const std::vector<uint32_t>& blocks, const std::vector<uint32_t>& ahead = {}) {
         take();
         requests.beginFrame();
         index.beginFrame(++frameIndex);
         double priority = 100;
         for (const uint32_t block : blocks) static_cast<void>(index.block(block, priority--));
+        for (const uint32_t block : ahead) {
+            static_cast<void>(index.peek(block));
+            index.prefetch(block, 1000);
+        }
         requests.send([this](const Request& request) { return index.admit(request); });
     }
     bool isResident(uint32_t block) const {
@@ -148,6 +152,65 @@ TEST(IndexCache, ReservationsAreGivenBackOnFailure) {
     EXPECT_EQ(world.index.usedBytes(), 0u);
 }
 
+TEST(IndexCache, ABlockReadAheadComesAfterTheWantedOnesAndIsNotMissing) {
+    Index world(1 << 20);
+    world.frame({0, 3}, {4});
+    EXPECT_EQ(world.index.missingBlocks(), 2u);
+    ASSERT_EQ(world.loads.reads.size(), 3u);
+    EXPECT_EQ(world.loads.reads[2].at(0).block, 4u);
+    world.frame({0, 3}, {4});
+    EXPECT_TRUE(world.isResident(4));
+    EXPECT_EQ(world.index.prefetched().bytes, kBlockBytes);
+    EXPECT_EQ(world.index.prefetched().usedBytes, 0u);
+    world.frame({0, 3, 4});
+    world.frame({0, 3, 4});
+    EXPECT_EQ(world.index.missingBlocks(), 0u);
+    EXPECT_EQ(world.index.prefetched().usedBytes, kBlockBytes);
+    EXPECT_EQ(world.loads.reads.size(), 3u);
+}
+
+TEST(IndexCache, ABlockWantedBeforeItArrivesWasNotReadAhead) {
+    Index world(1 << 20);
+    world.loads.hold();
+    world.frame({0}, {4});
+    world.frame({0, 4});
+    EXPECT_EQ(world.index.missingBlocks(), 2u);
+    world.loads.letGo();
+    world.frame({0, 4});
+    EXPECT_TRUE(world.isResident(4));
+    EXPECT_EQ(world.index.prefetched().bytes, 0u);
+    EXPECT_EQ(world.index.prefetched().usedBytes, 0u);
+}
+
+TEST(IndexCache, ReadingAheadTakesNoRoomFromWhatWasUsedLatelyAndGivesItsOwnToTheFirstWant) {
+    Index world(2 * kHeldBytes + kBoundBytes);
+    world.frame({0, 1});
+    for (int i = 0; i < 10; ++i) world.frame({0, 1}, {2, 3});
+    EXPECT_TRUE(world.isResident(0) && world.isResident(1) && world.isResident(2));
+    EXPECT_FALSE(world.isResident(3));  // the one read ahead first stays, too
+    EXPECT_EQ(world.loads.reads.size(), 3u);
+    world.frame({0, 1, 4}, {2, 3});
+    world.frame({0, 1, 4}, {2, 3});
+    EXPECT_TRUE(world.isResident(1) && world.isResident(4));
+    EXPECT_FALSE(world.isResident(2));
+    EXPECT_EQ(world.index.prefetched().bytes, kBlockBytes);
+    EXPECT_EQ(world.index.prefetched().usedBytes, 0u);
+}
+
+TEST(IndexCache, LookingAheadIsNoUse) {
+    Index world(2 * kHeldBytes + kBoundBytes);
+    for (int i = 0; i < 3; ++i) world.frame({0, 1, 2});
+    for (int i = 0; i < 6; ++i) {
+        world.frame({0, 1});
+        EXPECT_NE(world.index.peek(2), nullptr);
+        EXPECT_EQ(world.index.peek(9), nullptr);
+    }
+    world.frame({0, 1, 3});
+    world.frame({0, 1, 3});
+    EXPECT_TRUE(world.isResident(3));
+    EXPECT_FALSE(world.isResident(2));
+}
+
 TEST(IndexCache, SlotsAreUniqueAndTheBudgetHoldsInAnyOrderOfEvents) {
     for (uint64_t seed = 1; seed <= 20; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
@@ -165,7 +228,7 @@ TEST(IndexCache, SlotsAreUniqueAndTheBudgetHoldsInAnyOrderOfEvents) {
             for (uint64_t j = random() % 4; j > 0; --j) {
                 looked.push_back(static_cast<uint32_t>(random() % kBlocks));
             }
-            world.frame(looked);
+            world.frame(looked, {static_cast<uint32_t>(random() % kBlocks)});
             for (const uint32_t block : looked) {
                 if (world.isResident(block)) usedIn[block] = world.frameIndex;
             }

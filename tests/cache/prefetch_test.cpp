@@ -45,8 +45,25 @@ TEST(Prefetch, PrecisionCountsBytesThatCameBeforeTheyWereWantedAndThoseWantedLat
     world.end();
     world.frames(1, {&tree.child(0), &tree.child(7)});
     world.frames(3, {&tree.child(0), &tree.child(7)});
-    EXPECT_EQ(world.residency.counters().prefetchedBytes, 300u);
-    EXPECT_EQ(world.residency.counters().usedPrefetchedBytes, 100u);
+    EXPECT_EQ(sumOf(world.residency.counters().prefetch).bytes, 300u);
+    EXPECT_EQ(sumOf(world.residency.counters().prefetch).usedBytes, 100u);
+}
+
+TEST(Prefetch, IsCountedByTheReasonItWasLastAskedFor) {
+    const Tree tree({.gapBytes = 1 << 20});
+    World world;
+    world.begin();
+    world.prefetch(tree.child(0), 1.0, 0);
+    world.prefetch(tree.child(1), 1.0, 2);
+    world.prefetch(tree.child(2), 1.0, 2);
+    world.end();
+    world.frames(2, {&tree.child(1)});
+    const PrefetchCounts& counts = world.residency.counters().prefetch;
+    EXPECT_EQ(counts[0].bytes, 100u);
+    EXPECT_EQ(counts[0].usedBytes, 0u);
+    EXPECT_EQ(counts[2].bytes, 200u);
+    EXPECT_EQ(counts[2].usedBytes, 100u);
+    EXPECT_EQ(counts[1].bytes + counts[3].bytes, 0u);
 }
 
 TEST(Prefetch, WhatIsWantedBeforeItArrivesIsNoPrefetch) {
@@ -60,8 +77,8 @@ TEST(Prefetch, WhatIsWantedBeforeItArrivesIsNoPrefetch) {
     world.loads.letGo();
     world.frames(1, {&tree.child(0)});
     EXPECT_TRUE(world.isResident(tree.child(0)));
-    EXPECT_EQ(world.residency.counters().prefetchedBytes, 0u);
-    EXPECT_EQ(world.residency.counters().usedPrefetchedBytes, 0u);
+    EXPECT_EQ(sumOf(world.residency.counters().prefetch).bytes, 0u);
+    EXPECT_EQ(sumOf(world.residency.counters().prefetch).usedBytes, 0u);
 }
 
 TEST(Prefetch, WhatWasEvictedBeforeItWasWantedWasNotUsed) {
@@ -77,8 +94,8 @@ TEST(Prefetch, WhatWasEvictedBeforeItWasWantedWasNotUsed) {
     world.frames(4, {});
     world.frames(4, {&tree.child(0)});
     EXPECT_TRUE(world.isResident(tree.child(0)));
-    EXPECT_EQ(world.residency.counters().prefetchedBytes, 100u);
-    EXPECT_EQ(world.residency.counters().usedPrefetchedBytes, 0u);
+    EXPECT_EQ(sumOf(world.residency.counters().prefetch).bytes, 100u);
+    EXPECT_EQ(sumOf(world.residency.counters().prefetch).usedBytes, 0u);
     EXPECT_EQ(world.residency.counters().reloadedPages, 1u);
 }
 
@@ -97,8 +114,8 @@ TEST(Prefetch, WhatWasEvictedFromHostMemoryWithoutHavingBeenUploadedWasNotUsedEi
     world.frames(4, {&tree.root()});
     world.frames(4, {&tree.root(), &tree.child(0)});
     EXPECT_TRUE(world.isResident(tree.child(0)));
-    EXPECT_EQ(world.residency.counters().prefetchedBytes, 100u);
-    EXPECT_EQ(world.residency.counters().usedPrefetchedBytes, 0u);
+    EXPECT_EQ(sumOf(world.residency.counters().prefetch).bytes, 100u);
+    EXPECT_EQ(sumOf(world.residency.counters().prefetch).usedBytes, 0u);
 }
 
 TEST(Prefetch, TakesNoRoomFromWhatWasUsedOrKeptLately) {

@@ -213,8 +213,9 @@ TEST(ResidencySoak, NoBudgetIsExceededAndEveryPromiseHoldsInAnyOrderOfEvents) {
         evicted += counters.evictedPages;
         failed += counters.failedPages;
         reloaded += counters.reloadedPages;
-        prefetched += counters.usedPrefetchedBytes;
-        ASSERT_LE(counters.usedPrefetchedBytes, counters.prefetchedBytes);
+        const PrefetchCount ahead = sumOf(counters.prefetch);
+        prefetched += ahead.usedBytes;
+        ASSERT_LE(ahead.usedBytes, ahead.bytes);
         retried += soak.world().requests.counters().retried;
         cancelled += soak.world().requests.counters().cancelled;
     }

@@ -99,8 +99,8 @@ struct World {
     PageState want(const ooc::NodeRecord& node, double priority = 1.0, bool isStandIn = false) {
         return residency.want({pageOf(node), node, priority}, isStandIn);
     }
-    void prefetch(const ooc::NodeRecord& node, double priority = 1.0) {
-        residency.prefetch({pageOf(node), node, priority});
+    void prefetch(const ooc::NodeRecord& node, double priority = 1.0, uint8_t reason = 0) {
+        residency.prefetch({pageOf(node), node, priority}, reason);
     }
     void end();  // requests are sent
     // Whole frames that want these, the first most urgent.

@@ -31,6 +31,12 @@ public:
     bool waitForArrival() override { return inner_->waitForArrival(); }
     size_t readsInFlight() const override { return inner_->readsInFlight(); }
 
+    [[nodiscard]] uint64_t pageCount() const {
+        uint64_t count = 0;
+        for (const auto& [node, times] : pages) count += static_cast<uint64_t>(times);
+        return count;
+    }
+
     std::map<ooc::NodeId, int> pages;  // times read
 
 private:
@@ -107,18 +113,24 @@ inline WrongPixels wrongPixels(const Rig& rig, const FrameRecord& record, const 
 }
 
 // Pixels whose leaf in `leaves` (the same view from leaves alone) nothing drawn stands for, and
-// which show something behind it, or nothing: what is left out must be hidden.
-inline uint64_t holes(const Rig& rig, const SoftwarePicture& leaves) {
+// which show something behind it, or nothing (`isBehind(pixel)`): what is left out must be hidden.
+template <typename Picture, typename IsBehind>
+uint64_t holes(const FrameCut& cut, const Picture& leaves, IsBehind&& isBehind) {
     std::set<ooc::NodeId> drawn;
-    for (const Node& node : rig.runner.cut().drawn()) drawn.insert(node.record->id);
+    for (const Node& node : cut.drawn()) drawn.insert(node.record->id);
     uint64_t count = 0;
     for (size_t i = 0; i < leaves.pixelCount(); ++i) {
-        if (leaves.nodeOrdinals[i] == 0 || rig.picture().depths[i] >= leaves.depths[i]) continue;
-        ooc::NodeId node = leaves.nodeAt(i);
+        if (leaves.nodeOrdinals[i] == 0 || !isBehind(i)) continue;
+        ooc::NodeId node = leaves.nodes[leaves.nodeOrdinals[i] - 1];
         while (!drawn.contains(node) && node != ooc::NodeId::root()) node = node.parent();
         count += !drawn.contains(node);
     }
     return count;
+}
+
+inline uint64_t holes(const Rig& rig, const SoftwarePicture& leaves) {
+    return holes(rig.runner.cut(), leaves,
+                 [&](size_t i) { return rig.picture().depths[i] < leaves.depths[i]; });
 }
 
 }  // namespace pagoda::hlod::test

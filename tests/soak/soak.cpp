@@ -1,10 +1,14 @@
-// Frames of random cameras (walks, still views, teleports), strategies, budgets, latencies and
-// disks (slow, failing, short reads), on the software device and a clock that only the program
-// moves. After each frame: budgets hold, nothing that shows is left out, the counts agree. The same
-// seed gives the same frames.
+// Frames of random cameras (walks, still views, teleports), strategies, budgets, latencies, disks
+// (slow, failing, short reads) and prefetch, on a clock that only the program moves. After each
+// frame: budgets hold, nothing that shows is left out, the counts agree. The same seed gives the
+// same frames.
 //
-//   pagoda_soak [FRAMES [SEED]]       default 1000 frames, a seed of its own
-#include "tests/hlod/software_rig.h"
+//   pagoda_soak [--gl] [FRAMES [SEED]]       default 1000 frames, a seed of its own
+//
+// On the software device, or with --gl on OpenGL, where budgets are larger (the renderer takes no
+// less) and so is the scene.
+#include "ooc/base/error.h"
+#include "tests/soak/soak_rig.h"
 
 #include <fmt/format.h>
 
@@ -13,21 +17,22 @@
 #include <cmath>
 #include <cstdlib>
 #include <random>
+#include <span>
 #include <string>
 
 namespace pagoda::hlod {
 namespace {
 
-using test::Rig;
 using test::RoomScene;
+using test::SoakRig;
 
 constexpr int kLongestEpisode = 400;
 constexpr uint64_t kMaxReported = 20;
-constexpr double kFrameS = 1.0 / 60.0;
 
 struct Totals {
     uint64_t frames = 0, episodes = 0, drawnNodes = 0, pagesRead = 0, evicted = 0, failedReads = 0;
     uint64_t settled = 0, framesWithHoles = 0, faults = 0, broken = 0;
+    cache::PrefetchCount prefetch;
     double peakGpuShare = 0, peakHostShare = 0, peakTauPx = 0;
 };
 
@@ -54,11 +59,10 @@ struct Episode {
     std::string strategy;
     double tauPx = 1.0;
     int frames = 0;
-    bool isPollFree = false;
-    test::RigOptions rig;
+    test::SoakOptions options;
 };
 
-Episode makeEpisode(Random& random, const RoomScene& scene) {
+Episode makeEpisode(Random& random, const RoomScene& scene, const test::SoakDevice& device) {
     static constexpr std::array kDisks = {"as-is",           "500MB/s",
                                           "2MB/s,10ms",      "500MB/s,40ms",
                                           "300MB/s,fail=1%", "1MB/s,20ms,fail=10%",
@@ -69,21 +73,25 @@ Episode makeEpisode(Random& random, const RoomScene& scene) {
     episode.strategy = kStrategies[static_cast<size_t>(random.whole(0, kStrategies.size() - 1))];
     episode.tauPx = random.whole(0, 9) == 0 ? 0.0 : random.log(0.3, 8.0);
     episode.frames = random.whole(10, kLongestEpisode);
-    episode.isPollFree = random.whole(0, 1) == 1;
+    episode.options.isPollFree = random.whole(0, 1) == 1;
+    episode.options.doesPrefetch = random.whole(0, 1) == 1;
+    test::RigOptions& rig = episode.options.rig;
     // From little more than the root to all of it.
     const uint64_t rootBytes = SoftwarePages(0).sizeBytes(scene.record(ooc::NodeId::root()));
     const bool isAmple = random.whole(0, 2) == 0;
-    episode.rig.gpuBytes =
+    rig.gpuBytes =
         isAmple
             ? uint64_t{16} << 20
             : static_cast<uint64_t>(1.05 * static_cast<double>(rootBytes) * random.log(1.0, 40.0));
-    episode.rig.hostBytes = static_cast<uint64_t>(random.log(double{1 << 19}, double{1 << 25}));
-    episode.rig.uploadBytesPerFrame =
+    rig.gpuBytes = std::max(rig.gpuBytes, device.leastGpuBytes());
+    rig.hostBytes = std::max(static_cast<uint64_t>(random.log(double{1 << 19}, double{1 << 25})),
+                             device.leastHostBytes());
+    rig.uploadBytesPerFrame =
         random.whole(0, 1) == 0 ? 0 : static_cast<uint64_t>(random.log(2e3, 1e6));
-    episode.rig.disk =
+    rig.disk =
         cache::parseDiskProfile(kDisks[static_cast<size_t>(random.whole(0, kDisks.size() - 1))]);
-    episode.rig.disk.seed = random.seed();
-    episode.rig.queryLatencyFrames = static_cast<uint32_t>(random.whole(0, 4));
+    rig.disk.seed = random.seed();
+    rig.queryLatencyFrames = static_cast<uint32_t>(random.whole(0, 4));
     return episode;
 }
 
@@ -126,13 +134,34 @@ private:
     double speed_ = 0, turn_ = 0, yaw_ = 0, pitch_ = 0;
 };
 
+struct Plan {
+    uint64_t frames = 1000, seed = 0;
+    bool isOnGl = false;
+};
+
+RoomScene::Options sceneOptions(const Plan& plan) {
+    RoomScene::Options options;
+    options.seed = static_cast<uint32_t>(plan.seed % 1000 + 1);
+    if (plan.isOnGl) options.boxesPerRoom *= 6;
+    return options;
+}
+
+std::unique_ptr<test::SoakDevice> makeDevice(const Plan& plan, const RoomScene& scene) {
+#ifdef PAGODA_SOAK_GL
+    if (plan.isOnGl) return test::makeGlDevice(scene);
+#else
+    if (plan.isOnGl) throw Error("--gl", "", "this program was built without GL", "leave it out");
+#endif
+    return test::makeSoftwareDevice(scene);
+}
+
 class Soak {
 public:
-    Soak(uint64_t seed, uint64_t frames)
-        : random_(seed),
-          frames_(frames),
-          scene_(RoomScene::Options{.seed = static_cast<uint32_t>(seed % 1000 + 1)}),
-          leaves_(scene_) {}
+    explicit Soak(const Plan& plan)
+        : random_(plan.seed),
+          frames_(plan.frames),
+          scene_(sceneOptions(plan)),
+          device_(makeDevice(plan, scene_)) {}
 
     const Totals& run() {
         while (totals_.frames < frames_) runEpisode();
@@ -141,72 +170,71 @@ public:
 
 private:
     void runEpisode() {
-        episode_ = makeEpisode(random_, scene_);
-        Rig rig(scene_, episode_.rig);
-        rig.device.setCounting(true, episode_.isPollFree);
+        episode_ = makeEpisode(random_, scene_, *device_);
+        const auto rig = device_->makeRig(episode_.options);
         const auto strategy = makeStrategy(episode_.strategy);
         Walker walker(random_, scene_);
         for (int i = 0; i < episode_.frames && totals_.frames < frames_; ++i) {
             const Camera camera = walker.next();
-            const FrameRecord record = rig.runner.run(camera, *strategy, {episode_.tauPx});
-            rig.clock.advance(kFrameS);
+            const FrameRecord record = rig->run(camera, *strategy, episode_.tauPx);
             ++totals_.frames;
-            check(rig, record, camera);
+            check(*rig, record, camera);
         }
         ++totals_.episodes;
-        for (const auto& [node, times] : rig.loads.pages) {
-            totals_.pagesRead += static_cast<uint64_t>(times);
-        }
-        totals_.evicted += rig.streaming.residency().counters().evictedPages;
-        totals_.failedReads += rig.streaming.requests().counters().retried;
-        totals_.faults += rig.streaming.residency().faults().size();
+        const cache::Streaming& streaming = rig->runner().streaming();
+        const cache::Residency::Counters& counters = streaming.residency().counters();
+        totals_.pagesRead += rig->pagesRead();
+        totals_.evicted += counters.evictedPages;
+        totals_.failedReads += streaming.requests().counters().retried;
+        totals_.faults += streaming.residency().faults().size();
+        totals_.prefetch += sumOf(counters.prefetch);
+        totals_.prefetch += streaming.prefetchedBlocks();
     }
 
     void expect(bool isRight, const std::string& what) {
         if (isRight) return;
         if (++totals_.broken > kMaxReported) return;
+        const test::RigOptions& rig = episode_.options.rig;
         fmt::print(stderr, "frame {} ({}, gpu {} host {} upload {} latency {} tau {}): {}\n",
-                   totals_.frames, episode_.strategy, episode_.rig.gpuBytes, episode_.rig.hostBytes,
-                   episode_.rig.uploadBytesPerFrame, episode_.rig.queryLatencyFrames,
-                   episode_.tauPx, what);
+                   totals_.frames, episode_.strategy, rig.gpuBytes, rig.hostBytes,
+                   rig.uploadBytesPerFrame, rig.queryLatencyFrames, episode_.tauPx, what);
     }
 
-    void check(Rig& rig, const FrameRecord& record, const Camera& camera) {
+    void check(SoakRig& rig, const FrameRecord& record, const Camera& camera) {
         checkBudgets(rig, record);
         checkCounts(rig, record);
         totals_.drawnNodes += record.drawnNodes;
         totals_.settled += record.isSettled;
         totals_.peakTauPx = std::max(totals_.peakTauPx, record.effectiveTauPx);
         if (record.drawnNodes == 0) return;  // the root is on its way, or cannot be read
-        static_cast<void>(leaves_.settle(camera, *frustum_, 0.0));
-        const uint64_t holes = test::holes(rig, leaves_.picture());
+        const uint64_t holes = rig.holes(camera);
         totals_.framesWithHoles += holes > 0;
         expect(holes == 0, fmt::format("{} pixels of holes", holes));
     }
 
-    void checkBudgets(Rig& rig, const FrameRecord& record) {
-        const uint64_t gpuBytes = rig.device.pages().usedBytes();
+    void checkBudgets(SoakRig& rig, const FrameRecord& record) {
+        const uint64_t gpuBytes = rig.gpuBytes();
         expect(gpuBytes == record.gpuBytes, "GPU bytes are counted twice or not at all");
-        expect(gpuBytes <= episode_.rig.gpuBytes, fmt::format("{} GPU bytes", gpuBytes));
-        expect(record.hostBytes <= episode_.rig.hostBytes,
+        expect(gpuBytes <= episode_.options.rig.gpuBytes, fmt::format("{} GPU bytes", gpuBytes));
+        expect(record.hostBytes <= episode_.options.rig.hostBytes,
                fmt::format("{} host bytes", record.hostBytes));
         const auto share = [](uint64_t bytes, uint64_t budget) {
             return static_cast<double>(bytes) / static_cast<double>(budget);
         };
         totals_.peakGpuShare =
-            std::max(totals_.peakGpuShare, share(gpuBytes, episode_.rig.gpuBytes));
-        totals_.peakHostShare =
-            std::max(totals_.peakHostShare, share(record.hostBytes, episode_.rig.hostBytes));
+            std::max(totals_.peakGpuShare, share(gpuBytes, episode_.options.rig.gpuBytes));
+        totals_.peakHostShare = std::max(totals_.peakHostShare,
+                                         share(record.hostBytes, episode_.options.rig.hostBytes));
     }
 
-    void checkCounts(Rig& rig, const FrameRecord& record) {
-        const FrameCut& cut = rig.runner.cut();
+    void checkCounts(SoakRig& rig, const FrameRecord& record) {
+        const FrameCut& cut = rig.runner().cut();
         std::set<ooc::NodeId> drawn;
         uint64_t standIns = 0;
         for (size_t i = 0; i < cut.drawn().size(); ++i) {
             const Node& node = cut.drawn()[i];
             expect(drawn.insert(node.record->id).second, "a node is drawn twice");
-            expect(rig.device.pages().contains(node.page()), "a drawn page is gone");
+            expect(rig.contains(node.page()), "a drawn page is gone");
             standIns += cut.drawnAsStandIn()[i];
         }
         expect(record.drawnNodes == drawn.size(), "drawn nodes");
@@ -220,28 +248,32 @@ private:
     Random random_;
     uint64_t frames_;
     RoomScene scene_;
-    Rig leaves_;
-    std::unique_ptr<Strategy> frustum_ = makeStrategy("frustum");
+    std::unique_ptr<test::SoakDevice> device_;
     Episode episode_;
     Totals totals_;
 };
 
-int run(int count, char** arguments) {
-    const uint64_t frames = count > 1 ? std::strtoull(arguments[1], nullptr, 10) : 1000;
-    const uint64_t seed =
-        count > 2 ? std::strtoull(arguments[2], nullptr, 10) : std::random_device{}();
-    fmt::print("soak: {} frames, seed {}\n", frames, seed);
-    const Totals totals = Soak(seed, frames).run();
+int run(std::span<char*> arguments) {
+    Plan plan;
+    plan.isOnGl = !arguments.empty() && std::string(arguments[0]) == "--gl";
+    if (plan.isOnGl) arguments = arguments.subspan(1);
+    if (!arguments.empty()) plan.frames = std::strtoull(arguments[0], nullptr, 10);
+    plan.seed =
+        arguments.size() > 1 ? std::strtoull(arguments[1], nullptr, 10) : std::random_device{}();
+    fmt::print("soak: {} frames{}, seed {}\n", plan.frames, plan.isOnGl ? " on GL" : "", plan.seed);
+    const Totals totals = Soak(plan).run();
     fmt::print(
         "soak: {} frames in {} episodes: {} broken rules, {} frames with holes; {:.1f} nodes drawn "
-        "a "
-        "frame, {} frames settled; {} pages read, {} evicted, {} reads failed, {} pages given up; "
-        "peaks: GPU {:.3f} and host {:.3f} of budget, tau {:.1f} px\n",
+        "a frame, {} frames settled; {} pages read, {} evicted, {} reads failed, {} pages given "
+        "up; "
+        "{} bytes read ahead, {} of them used; peaks: GPU {:.3f} and host {:.3f} of budget, tau "
+        "{:.1f} px\n",
         totals.frames, totals.episodes, totals.broken, totals.framesWithHoles,
         static_cast<double>(totals.drawnNodes) /
             static_cast<double>(std::max<uint64_t>(totals.frames, 1)),
         totals.settled, totals.pagesRead, totals.evicted, totals.failedReads, totals.faults,
-        totals.peakGpuShare, totals.peakHostShare, totals.peakTauPx);
+        totals.prefetch.bytes, totals.prefetch.usedBytes, totals.peakGpuShare, totals.peakHostShare,
+        totals.peakTauPx);
     return totals.broken == 0 ? 0 : 1;
 }
 
@@ -249,5 +281,10 @@ int run(int count, char** arguments) {
 }  // namespace pagoda::hlod
 
 int main(int count, char** arguments) {
-    return pagoda::hlod::run(count, arguments);
+    try {
+        return pagoda::hlod::run(std::span(arguments, static_cast<size_t>(count)).subspan(1));
+    } catch (const pagoda::Error& error) {
+        fmt::print(stderr, "pagoda_soak: {}\n", error.what());
+        return 2;
+    }
 }

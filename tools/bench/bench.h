@@ -66,7 +66,8 @@ struct LivePass {
     double worstFallbackShare = 0;  // of a frame's covered pixels
     uint64_t missingPages = 0;
     uint64_t pageBytesRead = 0;
-    uint64_t prefetchedBytes = 0, usedPrefetchedBytes = 0;
+    cache::PrefetchCounts prefetch{};       // pages, by hlod::PrefetchReason
+    cache::PrefetchCount prefetchedBlocks;  // index blocks
     std::vector<double> fallbackShareSeries;
     size_t referenceFrames = 0;  // held against the leaves
     uint64_t holes = 0, holeFrames = 0;

@@ -11,21 +11,33 @@ double share(uint64_t part, uint64_t whole) {
     return whole > 0 ? shown(static_cast<double>(part) / static_cast<double>(whole)) : 0.0;
 }
 
+Json toJson(const cache::PrefetchCount& count) {
+    return {{"bytes", count.bytes},
+            {"used", count.usedBytes},
+            {"precision", share(count.usedBytes, count.bytes)}};
+}
+
 Json toJson(const LivePass& pass) {
-    return {{"frames", pass.frames},
-            {"covered_pixels", pass.coveredPixels},
-            {"fallback_pixels", pass.fallbackPixels},
-            {"fallback_share", share(pass.fallbackPixels, pass.coveredPixels)},
-            {"fallback_share_worst", shown(pass.worstFallbackShare)},
-            {"fallback_frames", pass.fallbackFrames},
-            {"missing_pages", pass.missingPages},
-            {"page_bytes_read", pass.pageBytesRead},
-            {"prefetched_bytes", pass.prefetchedBytes},
-            {"used_prefetched_bytes", pass.usedPrefetchedBytes},
-            {"prefetch_precision", share(pass.usedPrefetchedBytes, pass.prefetchedBytes)},
-            {"reference_frames", pass.referenceFrames},
-            {"holes", pass.holes},
-            {"hole_frames", pass.holeFrames}};
+    const cache::PrefetchCount all = sumOf(pass.prefetch);
+    Json json = {{"frames", pass.frames},
+                 {"covered_pixels", pass.coveredPixels},
+                 {"fallback_pixels", pass.fallbackPixels},
+                 {"fallback_share", share(pass.fallbackPixels, pass.coveredPixels)},
+                 {"fallback_share_worst", shown(pass.worstFallbackShare)},
+                 {"fallback_frames", pass.fallbackFrames},
+                 {"missing_pages", pass.missingPages},
+                 {"page_bytes_read", pass.pageBytesRead},
+                 {"prefetched_bytes", all.bytes},
+                 {"used_prefetched_bytes", all.usedBytes},
+                 {"prefetch_precision", share(all.usedBytes, all.bytes)},
+                 {"reference_frames", pass.referenceFrames},
+                 {"holes", pass.holes},
+                 {"hole_frames", pass.holeFrames}};
+    for (size_t i = 0; i < pass.prefetch.size(); ++i) {
+        json["prefetch"][hlod::kPrefetchReasonNames[i]] = toJson(pass.prefetch[i]);
+    }
+    json["prefetch"]["blocks"] = toJson(pass.prefetchedBlocks);
+    return json;
 }
 
 Json toJson(const StillPass& pass) {

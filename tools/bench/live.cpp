@@ -67,8 +67,8 @@ LivePass runLive(const BenchPlan& plan, const BenchConfiguration& configuration,
     const cache::Residency::Counters& counters =
         renderer.runner().streaming().residency().counters();
     pass.pageBytesRead = counters.bytesRead;
-    pass.prefetchedBytes = counters.prefetchedBytes;
-    pass.usedPrefetchedBytes = counters.usedPrefetchedBytes;
+    pass.prefetch = counters.prefetch;
+    pass.prefetchedBlocks = renderer.runner().streaming().prefetchedBlocks();
     return pass;
 }
 

@@ -93,6 +93,7 @@ void writeReports(const Arguments& arguments, const std::vector<BenchRun>& runs,
 
 void printLive(const BenchRun& run) {
     const LivePass& live = run.live;
+    const cache::PrefetchCount ahead = sumOf(live.prefetch);
     const auto percent = [](uint64_t part, uint64_t whole) {
         return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0.0;
     };
@@ -101,8 +102,7 @@ void printLive(const BenchRun& run) {
         "read, {:.1f} MB ahead, {:.0f}% of it used\n",
         run.strategy, run.pathName, percent(live.fallbackPixels, live.coveredPixels),
         100.0 * live.worstFallbackShare, static_cast<double>(live.pageBytesRead) * 1e-6,
-        static_cast<double>(live.prefetchedBytes) * 1e-6,
-        percent(live.usedPrefetchedBytes, live.prefetchedBytes));
+        static_cast<double>(ahead.bytes) * 1e-6, percent(ahead.usedBytes, ahead.bytes));
 }
 
 void printHoles(const BenchRun& run, const char* pass, size_t frames, uint64_t holes,

@@ -70,6 +70,7 @@ TEST(CameraMotion, StandsStillAfterAJumpAndWhenNothingMoves) {
 struct Seen {
     uint64_t fallbackPixels = 0, prefetched = 0, used = 0, read = 0;
     uint64_t gpuPeak = 0, hostPeak = 0;
+    uint64_t missingBlocks = 0, blocksAhead = 0, blocksUsed = 0;
     bool operator==(const Seen&) const = default;
 };
 
@@ -83,9 +84,12 @@ Seen walk(bool doesPrefetch, const char* name, const RigOptions& options) {
     Seen seen;
     for (int i = 0; i < kFrames; ++i) {
         const FrameRecord record = rig.live(rooms().walk(i, kFrames), *strategy, 1.0);
-        seen.prefetched += record.prefetchedBytes;
-        seen.used += record.usedPrefetchedBytes;
+        seen.prefetched += sumOf(record.prefetch).bytes;
+        seen.used += sumOf(record.prefetch).usedBytes;
         seen.read += record.bytesRead;
+        seen.missingBlocks += rig.streaming.index().missingBlocks();
+        seen.blocksAhead += record.prefetchedBlocks.bytes;
+        seen.blocksUsed += record.prefetchedBlocks.usedBytes;
         seen.gpuPeak = std::max({seen.gpuPeak, record.gpuBytes, rig.device.pages().usedBytes()});
         seen.hostPeak = std::max(seen.hostPeak, record.hostBytes);
         std::set<ooc::NodeId> standIns;
@@ -99,8 +103,8 @@ Seen walk(bool doesPrefetch, const char* name, const RigOptions& options) {
         }
     }
     const cache::Residency::Counters& counters = rig.streaming.residency().counters();
-    EXPECT_EQ(seen.prefetched, counters.prefetchedBytes);
-    EXPECT_EQ(seen.used, counters.usedPrefetchedBytes);
+    EXPECT_EQ(seen.prefetched, sumOf(counters.prefetch).bytes);
+    EXPECT_EQ(seen.used, sumOf(counters.prefetch).usedBytes);
     return seen;
 }
 
@@ -115,6 +119,68 @@ TEST(Prefetch, MakesAWalkOnASlowDiskShowFewerStandIns) {
         EXPECT_LE(with.used, with.prefetched);
         EXPECT_GT(with.used, 0u) << name;
         EXPECT_LT(with.fallbackPixels, without.fallbackPixels) << name;
+        EXPECT_EQ(without.blocksAhead, 0u);
+        EXPECT_GT(with.blocksUsed, 0u) << name;
+        EXPECT_LE(with.blocksUsed, with.blocksAhead);
+        EXPECT_LT(with.missingBlocks, without.missingBlocks) << name;
+    }
+}
+
+// Frames times blocks that the traversal asked for and did not have, down onto the rooms: from afar
+// only the root's block is needed.
+uint64_t missingBlocksOnADescent(bool doesPrefetch) {
+    Rig rig(rooms(), {.disk = cache::parseDiskProfile("1000MB/s,30ms")});
+    rig.runner.setPrefetch(doesPrefetch);
+    const auto strategy = makeStrategy("frustum");
+    uint64_t missing = 0;
+    for (int i = 0; i < 120; ++i) {
+        Camera camera = lookingAlong({2000, 2000, 140 + 6000 * std::exp(-0.01 * i)}, {0, 0, -1});
+        camera.up = {0, 1, 0};
+        camera.widthPx = 64;
+        camera.heightPx = 48;
+        if (i == 0) {
+            static_cast<void>(rig.settle(camera, *strategy, 1.0));
+            EXPECT_EQ(rig.streaming.index().blockCount(), 1u);
+        }
+        static_cast<void>(rig.live(camera, *strategy, 1.0));
+        missing += rig.streaming.index().missingBlocks();
+    }
+    EXPECT_GT(rig.streaming.index().blockCount(), 8u);
+    return missing;
+}
+
+TEST(Prefetch, BlocksOnTheWayAreThereWhenTheCameraComes) {
+    const uint64_t without = missingBlocksOnADescent(false), with = missingBlocksOnADescent(true);
+    EXPECT_GE(without, 20u);
+    // Nearly all: the first of them teach how long a load takes.
+    EXPECT_LE(5 * with, without);
+}
+
+TEST(Prefetch, ReadsForTheReasonsItIsToldAlone) {
+    for (size_t reason = 0; reason < cache::kPrefetchReasons; ++reason) {
+        Rig rig(rooms(), {.disk = cache::parseDiskProfile(kSlowDisk)});
+        rig.runner.setPrefetch(true);
+        rig.runner.prefetcher().setReasons(PrefetchReasons().set(reason));
+        const auto strategy = makeStrategy("coh");
+        for (int i = 0; i < 60; ++i) {
+            static_cast<void>(rig.live(rooms().walk(i, 150), *strategy, 1.0));
+        }
+        const cache::PrefetchCounts& counts = rig.streaming.residency().counters().prefetch;
+        for (size_t other = 0; other < counts.size(); ++other) {
+            EXPECT_TRUE(other == reason || counts[other].bytes == 0) << reason << " " << other;
+        }
+    }
+}
+
+TEST(PrefetchReasons, AreReadFromTheirNames) {
+    EXPECT_TRUE(parsePrefetchReasons("on")->all());
+    EXPECT_TRUE(parsePrefetchReasons("off")->none());
+    const PrefetchReasons two = parsePrefetchReasons("uncover,near").value();
+    EXPECT_EQ(two.count(), 2u);
+    EXPECT_TRUE(two.test(static_cast<size_t>(PrefetchReason::Near)));
+    EXPECT_TRUE(two.test(static_cast<size_t>(PrefetchReason::Uncover)));
+    for (const char* text : {"", "near,", ",near", "nearby", "on,near", "near refine"}) {
+        EXPECT_FALSE(parsePrefetchReasons(text)) << text;
     }
 }
 
@@ -143,7 +209,7 @@ TEST(Prefetch, ReadsNothingForAStillCamera) {
         static_cast<void>(rig.live(rooms().walk(3, 10), *strategy, 1.0));
     }
     EXPECT_EQ(rig.loads.pages, pages);
-    EXPECT_EQ(rig.streaming.residency().counters().prefetchedBytes, 0u);
+    EXPECT_EQ(sumOf(rig.streaming.residency().counters().prefetch).bytes, 0u);
 }
 
 TEST(Prefetch, StopsForAReasonThatForetoldInVainAndGoesOnWhenItIsRightAgain) {
