@@ -70,6 +70,11 @@ DiskLoads::DiskLoads(std::unique_ptr<LoadQueue> inner, const DiskProfile& profil
     : inner_(std::move(inner)), profile_(profile), clock_(clock) {
 }
 
+void DiskLoads::setProfile(const DiskProfile& profile) {
+    profile_ = profile;
+    lineFreeS_ = std::min(lineFreeS_, clock_.nowS());
+}
+
 // SplitMix64 of a counter: the same sequence on every machine.
 double DiskLoads::chance() {
     uint64_t z = (profile_.seed + ++draws_) * 0x9E3779B97F4A7C15ull;

@@ -48,6 +48,8 @@ public:
     // Moves the clock to the next arrival. False also when the inner queue has lost what is due.
     [[nodiscard]] bool waitForArrival() override;
     [[nodiscard]] size_t readsInFlight() const override { return reads_.size(); }
+    // Of what is sent from now on; what is on its way keeps its time of arrival.
+    void setProfile(const DiskProfile& profile);
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
 
 private:

@@ -26,7 +26,9 @@ struct LoadResult {
     uint64_t ticket = 0;
     std::optional<ooc::Page> page;
     std::optional<ooc::IndexBlock> block;
-    std::string fault;  // why there is neither
+    std::string fault;                   // why there is neither
+    ooc::Codec codec = ooc::Codec::Raw;  // of the page
+    double decodeS = 0;                  // that decoding it took
 };
 
 class LoadQueue {

@@ -73,8 +73,9 @@ uint64_t Residency::evictBeforeFrame(bool isPrefetch) const {
     return isPrefetch ? spareFrame(frameIndex_) : keepSinceFrame(frameIndex_);
 }
 
-void Residency::beginFrame(uint64_t frameIndex) {
+void Residency::beginFrame(uint64_t frameIndex, double nowS) {
     frameIndex_ = frameIndex;
+    nowS_ = nowS;
     gpuLru_.unpinAll();
     demandBytes_ = missingPages_ = 0;
     demanded_.clear();
@@ -132,6 +133,7 @@ bool Residency::uploadOne(PageId id, const ooc::Page& page) {
     GpuPages::Upload done = GpuPages::Upload::NoRoom;
     do {
         counters_.evictedPages += evicted.size();
+        for (const PageId& gone : evicted) history_.noteEvicted(gone, id, frameIndex_);
         dropFromGpu(evicted);
         done = gpu_.upload(id, page);
     } while (done == GpuPages::Upload::NoRoom && gpuLru_.evictOldest(evicted, before));
@@ -147,6 +149,7 @@ bool Residency::uploadOne(PageId id, const ooc::Page& page) {
     }
     // Prefetched, it is as old as what is kept, so that it is never in the way.
     gpuLru_.insert(id, sizeBytes, isPrefetch ? spareFrame(frameIndex_) : frameIndex_);
+    history_.noteUploaded(id, frameIndex_);
     ++counters_.uploadedPages;
     counters_.bytesUploaded += sizeBytes;
     return true;
@@ -243,13 +246,7 @@ void Residency::arrive(RequestQueue::Arrival& arrival) {
         if (!arrival.result.fault.empty()) fail(id, std::move(arrival.result.fault));
         return;
     }
-    counters_.bytesRead += request.range.bytes;
-    ++counters_.loadedPages;
-    if (!everLoaded_.insert(id).second) {
-        ++counters_.reloadedPages;
-        counters_.bytesReloaded += request.range.bytes;
-    }
-    if (request.isPrefetch) counters_.prefetch[request.reason].bytes += request.range.bytes;
+    count(request, arrival.result);
     const uint64_t sizeBytes = decodedBytes(*arrival.result.page);
     if (sizeBytes > hostLru_.budgetBytes()) {  // longer than its record foretold
         fail(id, tooLarge(sizeBytes, "host", hostLru_.budgetBytes()));
@@ -264,6 +261,25 @@ void Residency::arrive(RequestQueue::Arrival& arrival) {
     toUpload_.of(request.isPrefetch) += reservation.gpuBytes;
     const uint64_t askedFrame = frameIndex_ - std::min(frameIndex_, arrival.framesSinceAsked);
     waiting_[id] = {askedFrame, request.priority};
+}
+
+void Residency::count(const Request& request, const LoadResult& result) {
+    const PageId id{request.key.database, request.node.id};
+    counters_.bytesRead += request.range.bytes;
+    ++counters_.loadedPages;
+    if (!everLoaded_.insert(id).second) {
+        ++counters_.reloadedPages;
+        counters_.bytesReloaded += request.range.bytes;
+    }
+    if (request.isPrefetch) counters_.prefetch[request.reason].bytes += request.range.bytes;
+    history_.noteRead(id, frameIndex_, nowS_);
+    CodecSums& sums = codecs_[static_cast<size_t>(result.codec)];
+    ++sums.pages;
+    sums.triangles += result.page->mesh.triangleCount();
+    sums.vertices += result.page->mesh.vertexCount();
+    sums.encodedBytes += request.range.bytes;
+    sums.decodedBytes += decodedBytes(*result.page);
+    sums.decodeS += result.decodeS;
 }
 
 void Residency::fail(PageId id, std::string what) {

@@ -7,8 +7,10 @@
 // Render thread only. Its place in a frame: docs/frame.md.
 #pragma once
 
+#include "cache/codec_statistics.h"
 #include "cache/gpu_pages.h"
 #include "cache/lru_pages.h"
+#include "cache/page_history.h"
 #include "cache/prefetch_counts.h"
 #include "cache/request_queue.h"
 
@@ -63,7 +65,8 @@ public:
     Residency& operator=(const Residency&) = delete;
 
     // Unpins, then uploads what has arrived and was wanted lately, best first, within the budget.
-    void beginFrame(uint64_t frameIndex);
+    // `nowS` is for the history alone.
+    void beginFrame(uint64_t frameIndex, double nowS = 0.0);
     // Uploads go on within this frame, without the frame's bound: for who waits anyway.
     void uploadArrived();
     // Resident: pins it. Absent: asks for it. A stand-in is drawn while something finer is on its
@@ -94,6 +97,8 @@ public:
     // Pages that this frame wanted and that are absent.
     [[nodiscard]] uint64_t missingPages() const noexcept { return missingPages_; }
     [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
+    [[nodiscard]] const CodecStatistics& codecs() const noexcept { return codecs_; }
+    [[nodiscard]] const PageHistory& history() const noexcept { return history_; }
     [[nodiscard]] const std::vector<PageFault>& faults() const noexcept { return faults_; }
     [[nodiscard]] uint64_t gpuUsedBytes() const noexcept { return gpuLru_.usedBytes(); }
     [[nodiscard]] uint64_t gpuBudgetBytes() const noexcept { return gpuLru_.budgetBytes(); }
@@ -121,6 +126,7 @@ private:
     [[nodiscard]] bool uploadOne(PageId id, const ooc::Page& page);
     void demand(PageId id, uint64_t sizeBytes, bool isStandIn);
     void fail(PageId id, std::string what);
+    void count(const Request& request, const LoadResult& result);
     void dropFromGpu(std::vector<PageId>& evicted);
     void dropFromHost(std::vector<PageId>& evicted);
     [[nodiscard]] uint64_t evictBeforeFrame(bool isPrefetch) const;
@@ -145,7 +151,10 @@ private:
     std::unordered_set<PageId, PageIdHash> demanded_;  // in this frame, and absent
     uint64_t demandBytes_ = 0, missingPages_ = 0;
     Counters counters_;
+    CodecStatistics codecs_{};
+    PageHistory history_;
     uint64_t frameIndex_ = 0;
+    double nowS_ = 0.0;
 };
 
 // Bytes of a decoded page in host memory, and their bound as far as the record tells.

@@ -15,7 +15,8 @@ uint64_t indexBudget(const Streaming::Options& options) {
 
 Streaming::Streaming(std::span<const SceneDatabase> databases, LoadQueue& loads, GpuPages& gpu,
                      Clock& clock, const Options& options)
-    : requests_(loads, clock, options.limits),
+    : clock_(clock),
+      requests_(loads, clock, options.limits),
       residency_(
           {options.hostBytes - indexBudget(options), options.gpuBytes, options.uploadBytesPerFrame},
           requests_, gpu) {
@@ -44,7 +45,7 @@ void Streaming::beginFrame() {
     ++frameIndex_;
     take();
     requests_.beginFrame();
-    residency_.beginFrame(frameIndex_);
+    residency_.beginFrame(frameIndex_, clock_.nowS());
     for (const auto& index : indexes_) index->beginFrame(frameIndex_);
 }
 

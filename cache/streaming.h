@@ -48,6 +48,7 @@ public:
     [[nodiscard]] const Residency& residency() const noexcept { return residency_; }
     [[nodiscard]] IndexCache& index(uint32_t database = 0) { return *indexes_[database]; }
     [[nodiscard]] const RequestQueue& requests() const noexcept { return requests_; }
+    [[nodiscard]] const Clock& clock() const noexcept { return clock_; }
     [[nodiscard]] uint64_t frameIndex() const noexcept { return frameIndex_; }
     // Pages and blocks that the last frame wanted and did not have.
     [[nodiscard]] uint64_t missing() const;
@@ -59,6 +60,7 @@ public:
 private:
     void take();
 
+    Clock& clock_;
     RequestQueue requests_;
     Residency residency_;
     std::vector<std::unique_ptr<IndexCache>> indexes_;

@@ -1,7 +1,10 @@
 #include "cache/thread_loads.h"
 
+#include "ooc/codecs/mesh_codec.h"
+
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <exception>
 #include <iterator>
 #include <string>
@@ -18,7 +21,11 @@ LoadResult decodeItem(const PageSource& source, const LoadItem& item,
         result.block = std::move(loaded.value);
         result.fault = std::move(loaded.fault);
     } else {
+        const auto begin = std::chrono::steady_clock::now();
         auto loaded = source.decodePage(item.node, bytes);
+        result.decodeS =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        result.codec = ooc::meshCodecOf(bytes).value_or(ooc::Codec::Raw);
         result.page = std::move(loaded.value);
         result.fault = std::move(loaded.fault);
     }

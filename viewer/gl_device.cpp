@@ -10,6 +10,25 @@
 #include <algorithm>
 
 namespace pagoda::viewer {
+namespace {
+
+// Cuts what is drawn while it lives. Programs that write no distance must not be drawn with it.
+class SectionScope {
+public:
+    explicit SectionScope(const LatticeView& view) : isOn_(view.hasSection) {
+        if (isOn_) glEnable(GL_CLIP_DISTANCE0);
+    }
+    ~SectionScope() {
+        if (isOn_) glDisable(GL_CLIP_DISTANCE0);
+    }
+    SectionScope(const SectionScope&) = delete;
+    SectionScope& operator=(const SectionScope&) = delete;
+
+private:
+    bool isOn_;
+};
+
+}  // namespace
 
 std::vector<hlod::Node> translucentBackToFront(std::span<const hlod::Node> nodes,
                                                const Vec3d& eyeModel) {
@@ -74,12 +93,19 @@ void GlDevice::beginFrame(const hlod::View& view) {
     Stopwatch watch;
     target_->begin(background_);
     latticeView_ = makeLatticeView(view, lattice_);
-    program_.setView(latticeView_, worldUp_);
+    store_.setHidden(view.clip().hidden);
+    program().setView(latticeView_, worldUp_);
     queries_.beginFrame(view, latticeView_, lattice_);
     depthTests_->beginFrame(view, *target_, pushesOccluders_ ? &pushes_ : nullptr);
     target_->beginOpaque();
-    drawer_.bind(program_, latticeView_);
+    drawer_.bind(program(), latticeView_);
     drawMs_ += watch.lapMs();
+}
+
+NodeProgram& GlDevice::program() {
+    if (!latticeView_.hasSection) return program_;
+    if (!sectionProgram_) sectionProgram_.emplace(std::span<const char* const>{}, true);
+    return *sectionProgram_;
 }
 
 uint32_t GlDevice::ordinalOf(const hlod::Node& node) {
@@ -105,6 +131,7 @@ void GlDevice::flush() {
     std::sort(gathered_.begin(), gathered_.end(),
               [](const DrawItem& a, const DrawItem& b) { return a.page < b.page; });
     drawnNodes_ += gathered_.size();
+    const SectionScope section(latticeView_);
     // Boxes of queries are filled all the same.
     if (isWireframe_) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
     drawnTriangles_ += drawer_.drawOpaque(gathered_);
@@ -115,7 +142,7 @@ void GlDevice::flush() {
 
 void GlDevice::restoreState() {
     target_->beginOpaque();
-    drawer_.rebind(program_);
+    drawer_.rebind(program());
 }
 
 void GlDevice::finishOpaque(hlod::FrameRecord& record) {
@@ -138,6 +165,7 @@ void GlDevice::drawZippers(const hlod::FrameCut& cut, hlod::FrameRecord& record)
             items.push_back({node.page(), ordinalOf(node), tintOf(node)});
         }
     }
+    const SectionScope section(latticeView_);
     const auto isRefined = [&](cache::PageId page) { return cut.refined(page); };
     record.drawnTriangles += drawer_.drawZippers(items, isRefined, record.drawnZippers);
 }
@@ -148,7 +176,8 @@ void GlDevice::drawTranslucent(std::span<const hlod::Node> order, hlod::FrameRec
     if (!isBackgroundPainted_) target_->paintBackground();
     isBackgroundPainted_ = true;
     target_->beginTranslucent();
-    drawer_.rebind(program_);
+    drawer_.rebind(program());
+    const SectionScope section(latticeView_);
     const uint64_t triangles = drawer_.drawTranslucent(items);
     record.translucentTriangles += triangles;
     record.drawnTriangles += triangles;

@@ -55,6 +55,7 @@ public:
 private:
     void flush();
     void restoreState();
+    [[nodiscard]] NodeProgram& program();
     [[nodiscard]] uint32_t ordinalOf(const hlod::Node& node);
     [[nodiscard]] glm::u8vec4 tintOf(const hlod::Node& node) const;
     void drawZippers(const hlod::FrameCut& cut, hlod::FrameRecord& record);
@@ -62,6 +63,7 @@ private:
     ooc::Lattice lattice_;
     MeshStore store_;
     NodeProgram program_;
+    std::optional<NodeProgram> sectionProgram_;  // made when a view is first cut
     NodeDrawer drawer_;
     BoxQueries queries_;
     bool pushesOccluders_;

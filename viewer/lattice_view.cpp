@@ -28,6 +28,11 @@ LatticeView makeLatticeView(const hlod::View& view, const ooc::Lattice& lattice)
     result.nearSteps = static_cast<float>(view.nearModelUnits() / step);
     result.up = Vec3f(view.up());
     result.right = Vec3f(view.right());
+    if (const auto& section = view.clip().section) {
+        result.hasSection = true;
+        result.sectionNormal = Vec3f(section->normal);
+        result.sectionReachSteps = static_cast<float>(-section->above(view.eye()) / step);
+    }
     return result;
 }
 

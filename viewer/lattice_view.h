@@ -18,6 +18,10 @@ struct LatticeView {
     Vec3f rowX{0.0f}, rowY{0.0f}, rowW{0.0f};
     float nearSteps = 0.0f;
     Vec3f up{0.0f}, right{0.0f};  // of the camera, unit, for the light
+    // Points relative to the eye with dot(normal, point) > reach are cut away (hlod::Clip).
+    bool hasSection = false;
+    Vec3f sectionNormal{0.0f};
+    float sectionReachSteps = 0.0f;
 
     // What the shader adds to a vertex of a page whose positions are relative to `pageOrigin`.
     [[nodiscard]] Vec3i offsetOf(const Vec3i& pageOrigin) const {

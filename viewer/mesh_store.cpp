@@ -119,6 +119,7 @@ GpuPage pack(const ooc::Page& source, const GpuPageLayout& layout,
     page.origin = mesh.positions.empty() ? Vec3i(0) : mesh.box().min;
     page.meshTriangles = mesh.triangleCount();
     page.opaqueTriangles = mesh.opaqueTriangleCount();
+    page.runs = mesh.runs;
     Packer packer(staging, layout, page.origin);
     for (size_t i = 0; i < mesh.positions.size(); ++i) {
         packer.addVertex(mesh.positions[i],
@@ -187,6 +188,7 @@ MeshStore::Upload MeshStore::upload(cache::PageId id, const ooc::Page& page) {
         glNamedBufferSubData(buffer(place->chunk), static_cast<GLintptr>(place->offset),
                              static_cast<GLsizeiptr>(staging_.size()), staging_.data());
     }
+    choose(packed);
     pages_.emplace(id, Entry{place->offset, neededBytes, std::move(packed)});
     return Upload::Done;
 }
@@ -196,6 +198,35 @@ void MeshStore::drop(cache::PageId id) {
     assert(found != pages_.end());
     chunks_[found->second.page.chunk].arena.free(found->second.offset);
     pages_.erase(found);
+}
+
+void MeshStore::setHidden(std::shared_ptr<const ooc::ObjectSet> hidden) {
+    if (hidden == hidden_) return;
+    hidden_ = std::move(hidden);
+    for (auto& [id, entry] : pages_) choose(entry.page);
+}
+
+void MeshStore::choose(GpuPage& page) const {
+    page.hasHidden = false;
+    page.shown.clear();
+    if (!hidden_ || hidden_->isEmpty()) return;
+    uint32_t first = 0;
+    for (const ooc::MeshRun& run : page.runs) {
+        const uint32_t begin = first;
+        first += run.triangleCount;
+        if (hidden_->contains(run.object)) {
+            page.hasHidden = true;
+            continue;
+        }
+        const bool isFollowing = !page.shown.empty() && begin != page.opaqueTriangles &&
+                                 page.shown.back().first + page.shown.back().count == begin;
+        if (isFollowing) {
+            page.shown.back().count += run.triangleCount;
+        } else {
+            page.shown.push_back({begin, run.triangleCount});
+        }
+    }
+    if (!page.hasHidden) page.shown.clear();
 }
 
 bool MeshStore::compactFor(uint64_t sizeBytes) {

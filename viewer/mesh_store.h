@@ -1,15 +1,18 @@
 // mesh_store.h: pages in GPU memory: one buffer of fixed size, in which each page has one range
 // with its vertices and 16-bit indices. Where gaps are too short for a page but long enough
 // together, ranges are moved: memory does not fragment. Implements what cache/ asks of GPU memory.
-// Also keeps, in host memory, what a translucent page needs to be sorted each frame. Render thread
-// only, context current.
+// Also keeps, in host memory, what a translucent page needs to be sorted each frame, and which
+// triangles are whose: where an object is hidden, the rest of a page is drawn range by range, so
+// that hiding needs nothing of shaders or GPU memory. Render thread only, context current.
 #pragma once
 
 #include "cache/arena.h"
 #include "cache/gpu_pages.h"
+#include "ooc/store/object_tree.h"
 #include "viewer/gl_names.h"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -33,6 +36,14 @@ struct GpuPage {
     };
     std::vector<Strip> zippers;
 
+    // Triangles in turn by object, and which of them are drawn while one of these is hidden.
+    struct TriangleRange {
+        uint32_t first = 0, count = 0;
+    };
+    std::vector<ooc::MeshRun> runs;
+    bool hasHidden = false;
+    std::vector<TriangleRange> shown;  // ascending, opaque and translucent ones apart
+
     // Translucent triangles: corners as in the page, centroids in steps from the origin.
     std::vector<uint16_t> translucentIndices;
     std::vector<Vec3f> translucentCentroids;
@@ -47,6 +58,9 @@ public:
     uint64_t sizeBytes(const ooc::NodeRecord& node) const override;
     Upload upload(cache::PageId id, const ooc::Page& page) override;
     void drop(cache::PageId id) override;
+
+    // Null, or an empty set: all are drawn. Costs a look at every page when it is another one.
+    void setHidden(std::shared_ptr<const ooc::ObjectSet> hidden);
 
     // The page was uploaded (asserted). Valid until it is dropped.
     [[nodiscard]] const GpuPage& page(cache::PageId id) const;
@@ -73,10 +87,13 @@ private:
     void compact(size_t chunk);
     void move(Entry& entry, uint64_t toOffset);
 
+    void choose(GpuPage& page) const;
+
     uint64_t budgetBytes_, chunkBytes_ = 0;
     std::vector<Chunk> chunks_;
     std::unordered_map<cache::PageId, Entry, cache::PageIdHash> pages_;
     std::vector<std::byte> staging_;
+    std::shared_ptr<const ooc::ObjectSet> hidden_;
 };
 
 }  // namespace pagoda::viewer

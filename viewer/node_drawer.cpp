@@ -38,11 +38,26 @@ void NodeDrawer::rebind(const NodeProgram& program) {
 uint64_t NodeDrawer::drawOpaque(std::span<const DrawItem> items) {
     uint64_t triangles = 0;
     for (const DrawItem& item : items) {
-        const GpuPage& page = store_.page(item.page);
-        add(page, {page.firstIndex, page.opaqueTriangles, 0, page.firstNormal}, item);
-        triangles += page.opaqueTriangles;
+        triangles += addOpaque(store_.page(item.page), item);
     }
     submit();
+    return triangles;
+}
+
+uint32_t NodeDrawer::addOpaque(const GpuPage& page, const DrawItem& item) {
+    if (!page.hasHidden) {
+        add(page, {page.firstIndex, page.opaqueTriangles, 0, page.firstNormal}, item);
+        return page.opaqueTriangles;
+    }
+    uint32_t triangles = 0;
+    for (const GpuPage::TriangleRange& range : page.shown) {
+        if (range.first >= page.opaqueTriangles) break;
+        const uint32_t firstNormal = page.firstNormal == GpuPage::kNoNormals
+                                         ? GpuPage::kNoNormals
+                                         : page.firstNormal + range.first;
+        add(page, {page.firstIndex + 3 * range.first, range.count, range.first, firstNormal}, item);
+        triangles += range.count;
+    }
     return triangles;
 }
 
@@ -52,6 +67,7 @@ uint64_t NodeDrawer::drawZippers(std::span<const DrawItem> items,
     uint64_t triangles = 0;
     for (const DrawItem& item : items) {
         const GpuPage& page = store_.page(item.page);
+        if (page.hasHidden && page.shown.empty()) continue;
         for (const GpuPage::Strip& strip : page.zippers) {
             if (isRefined({item.page.database, ooc::NodeId{strip.neighbour}})) continue;
             const uint32_t firstNormal =
@@ -73,10 +89,9 @@ uint64_t NodeDrawer::drawTranslucent(std::span<const DrawItem> items) {
     sortedIndices_.clear();
     for (const DrawItem& item : items) {
         const GpuPage& page = store_.page(item.page);
-        const auto count = static_cast<uint32_t>(page.translucentCentroids.size());
-        add(page, {static_cast<uint32_t>(sortedIndices_.size()), count, 0, GpuPage::kNoNormals},
-            item);
-        appendSorted(page);
+        const auto firstIndex = static_cast<uint32_t>(sortedIndices_.size());
+        const uint32_t count = appendSorted(page);
+        add(page, {firstIndex, count, 0, GpuPage::kNoNormals}, item);
         triangles += count;
     }
     if (!sortedIndices_.empty()) fill(sortedBuffer_.id(), sortedIndices_);
@@ -84,11 +99,21 @@ uint64_t NodeDrawer::drawTranslucent(std::span<const DrawItem> items) {
     return triangles;
 }
 
-void NodeDrawer::appendSorted(const GpuPage& page) {
+uint32_t NodeDrawer::appendSorted(const GpuPage& page) {
     const Vec3f eye = view_.eye - Vec3f(view_.offsetOf(page.origin));
     order_.clear();
-    for (uint32_t i = 0; i < page.translucentCentroids.size(); ++i) {
-        order_.emplace_back(-glm::dot(view_.rowW, page.translucentCentroids[i] - eye), i);
+    const auto addRange = [&](uint32_t first, uint32_t count) {
+        for (uint32_t i = first; i < first + count; ++i) {
+            order_.emplace_back(-glm::dot(view_.rowW, page.translucentCentroids[i] - eye), i);
+        }
+    };
+    if (page.hasHidden) {
+        for (const GpuPage::TriangleRange& range : page.shown) {
+            if (range.first < page.opaqueTriangles) continue;
+            addRange(range.first - page.opaqueTriangles, range.count);
+        }
+    } else {
+        addRange(0, static_cast<uint32_t>(page.translucentCentroids.size()));
     }
     std::sort(order_.begin(), order_.end());  // farthest first, then by number: a total order
     for (const auto& [depth, triangle] : order_) {
@@ -96,6 +121,7 @@ void NodeDrawer::appendSorted(const GpuPage& page) {
             sortedIndices_.push_back(page.translucentIndices[3 * triangle + corner]);
         }
     }
+    return static_cast<uint32_t>(order_.size());
 }
 
 void NodeDrawer::add(const GpuPage& page, const Range& range, const DrawItem& item) {

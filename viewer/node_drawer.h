@@ -31,7 +31,8 @@ public:
 
     // Triangles drawn. Items in the order given; ties at equal depth fall to the first drawn.
     uint64_t drawOpaque(std::span<const DrawItem> items);
-    // The zippers of refined nodes whose neighbour `isRefined` denies.
+    // The zippers of refined nodes whose neighbour `isRefined` denies. They belong to no object: a
+    // page of which nothing is shown has none.
     uint64_t drawZippers(std::span<const DrawItem> items,
                          const std::function<bool(cache::PageId)>& isRefined, uint64_t& stripCount);
     // Items from back to front; within each, triangles from back to front by their centroids.
@@ -50,7 +51,9 @@ private:
     void add(const GpuPage& page, const Range& range, const DrawItem& item);
     // Draws what was added; indices come from the chunk, or from `indexBuffer` when it is not 0.
     void submit(GlId indexBuffer = 0);
-    void appendSorted(const GpuPage& page);
+    uint32_t addOpaque(const GpuPage& page, const DrawItem& item);
+    // Returns the triangles appended.
+    uint32_t appendSorted(const GpuPage& page);
 
     const MeshStore& store_;
     LatticeView view_;

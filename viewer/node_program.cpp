@@ -23,6 +23,9 @@ layout(location = 1) uniform vec3 rowX;
 layout(location = 2) uniform vec3 rowY;
 layout(location = 3) uniform vec3 rowW;
 layout(location = 4) uniform float nearSteps;
+#ifdef SECTION
+layout(location = 7) uniform vec4 section;     // normal, reach: LatticeView
+#endif
 
 invariant gl_Position;
 layout(location = 0) out vec3 fromEye;
@@ -50,6 +53,9 @@ void main() {
     precise vec3 relative = vec3(positionSteps + offsetSteps) - eye;
     precise vec4 clip = vec4(dot(rowX, relative), dot(rowY, relative), nearSteps, dot(rowW, relative));
     gl_Position = clip;
+#ifdef SECTION
+    gl_ClipDistance[0] = section.w - dot(section.xyz, relative);
+#endif
     fromEye = relative;
     normal = decodeNormal(normalOct);
     albedo = vec4(linearFromSrgb(colourSrgb.rgb), colourSrgb.a);
@@ -103,7 +109,7 @@ void main() {
 }
 )";
 
-enum Location { kEye, kRowX, kRowY, kRowW, kNearSteps, kTowardsLight, kWorldUp };
+enum Location { kEye, kRowX, kRowY, kRowW, kNearSteps, kTowardsLight, kWorldUp, kSection };
 
 GlId compile(GLenum stage, const char* source) {
     const GlId shader = glCreateShader(stage);
@@ -116,6 +122,13 @@ GlId compile(GLenum stage, const char* source) {
     glGetShaderInfoLog(shader, sizeof log, nullptr, log);
     glDeleteShader(shader);
     throw Error("", "", std::string("the driver refuses a shader: ") + log, "please report it");
+}
+
+// Defines come behind the line with the version.
+std::string vertexSource(bool hasSection) {
+    std::string source = kVertexShader;
+    if (hasSection) source.insert(source.find('\n') + 1, "#define SECTION\n");
+    return source;
 }
 
 void attach(const GlProgram& program, GLenum stage, const char* source) {
@@ -162,8 +175,9 @@ GlProgram linkComputeProgram(const char* source) {
     return program;
 }
 
-NodeProgram::NodeProgram(std::span<const char* const> captured)
-    : program_(linkProgram(kVertexShader, kFragmentShader, captured)) {
+NodeProgram::NodeProgram(std::span<const char* const> captured, bool hasSection)
+    : program_(linkProgram(vertexSource(hasSection).c_str(), kFragmentShader, captured)),
+      hasSection_(hasSection) {
 }
 
 void NodeProgram::setView(const LatticeView& view, const Vec3f& worldUp) {
@@ -175,6 +189,9 @@ void NodeProgram::setView(const LatticeView& view, const Vec3f& worldUp) {
     glProgramUniform1f(program, kNearSteps, view.nearSteps);
     setVec3(program, kTowardsLight, 0.35f * view.up - 0.25f * view.right);
     setVec3(program, kWorldUp, worldUp);
+    if (!hasSection_) return;
+    const Vec3f& normal = view.sectionNormal;
+    glProgramUniform4f(program, kSection, normal.x, normal.y, normal.z, view.sectionReachSteps);
 }
 
 GlVertexArray makeNodeVertexArray() {

@@ -33,14 +33,17 @@ inline constexpr uint32_t kNormalsBinding = 0;
 
 class NodeProgram {
 public:
-    // With `captured` names (outputs of the vertex shader) for transform feedback, for tests.
-    explicit NodeProgram(std::span<const char* const> captured = {});
+    // With `captured` names (outputs of the vertex shader) for transform feedback, for tests. One
+    // that `hasSection` writes gl_ClipDistance[0]: draw with GL_CLIP_DISTANCE0 enabled. The other
+    // knows nothing of sections.
+    explicit NodeProgram(std::span<const char* const> captured = {}, bool hasSection = false);
 
     void setView(const LatticeView& view, const Vec3f& worldUp);
     [[nodiscard]] GlId id() const noexcept { return program_.id(); }
 
 private:
     GlProgram program_;
+    bool hasSection_;
 };
 
 // Compiles and links; throws Error with the driver's log (a fault of ours).

@@ -17,12 +17,15 @@ uint64_t gpuBytes(const RendererOptions& options) {
 }
 
 std::unique_ptr<cache::LoadQueue> makeLoads(const cache::PageSource& source,
-                                            const RendererOptions& options, cache::Clock& clock) {
+                                            const RendererOptions& options, cache::Clock& clock,
+                                            cache::DiskLoads*& disk) {
     if (options.loads != nullptr) return nullptr;
     auto threads = std::make_unique<cache::ThreadLoads>(
         std::vector<const cache::PageSource*>{&source}, options.loaderThreads);
     if (options.disk.isAsIs()) return threads;
-    return std::make_unique<cache::DiskLoads>(std::move(threads), options.disk, clock);
+    auto loads = std::make_unique<cache::DiskLoads>(std::move(threads), options.disk, clock);
+    disk = loads.get();
+    return loads;
 }
 
 cache::Streaming::Options streamingOptions(const RendererOptions& options) {
@@ -40,7 +43,7 @@ Renderer::Renderer(const ooc::Lattice& lattice, const cache::PageSource& source,
     : clock_(options.clock != nullptr ? *options.clock : wallClock_),
       source_(source),
       device_(lattice, gpuBytes(options), options.pyramid),
-      ownLoads_(makeLoads(source, options, clock_)),
+      ownLoads_(makeLoads(source, options, clock_, disk_)),
       streaming_(std::vector<cache::SceneDatabase>{{lattice, &source}},
                  ownLoads_ ? *ownLoads_ : *options.loads, device_.store(), clock_,
                  streamingOptions(options)),
@@ -54,21 +57,24 @@ Renderer::Renderer(const ooc::Lattice& lattice, const cache::PageSource& source,
 hlod::FrameRecord Renderer::renderLive(const hlod::Camera& camera, hlod::Strategy& strategy,
                                        const RenderOptions& options) {
     device_.setLook(options.background, options.worldUp);
-    return runner_.run(camera, strategy, {options.tauPx});
+    return runner_.run(camera, strategy,
+                       {.tauPx = options.tauPx, .clip = options.clip, .watch = options.watch});
 }
 
 hlod::FrameRecord Renderer::render(const hlod::Camera& camera, hlod::Strategy& strategy,
                                    const RenderOptions& options,
                                    const std::function<void(const hlod::FrameRecord&)>& onFrame) {
     device_.setLook(options.background, options.worldUp);
-    return runner_.settle(camera, strategy, {options.tauPx}, onFrame);
+    return runner_.settle(camera, strategy,
+                          {.tauPx = options.tauPx, .clip = options.clip, .watch = options.watch},
+                          onFrame);
 }
 
 hlod::FrameRecord Renderer::renderReference(const hlod::Camera& camera,
                                             const RenderOptions& options,
                                             const std::function<void()>& onBatch) {
     device_.setLook(options.background, options.worldUp);
-    const hlod::View view(camera, sceneBox());
+    const hlod::View view(camera, sceneBox(), options.clip);
     hlod::FrameRecord record;
     record.strategy = "reference";
     record.widthPx = camera.widthPx;
@@ -84,6 +90,12 @@ hlod::FrameRecord Renderer::renderReference(const hlod::Camera& camera,
     ReferenceDrawer(source_, loads, device_).draw(view, leaves.nodes, record, onBatch);
     record.drawMs = watch.lapMs();
     return record;
+}
+
+bool Renderer::setDisk(const cache::DiskProfile& disk) {
+    if (disk_ == nullptr) return false;
+    disk_->setProfile(disk);
+    return true;
 }
 
 Picture Renderer::read(hlod::FrameRecord& record) {

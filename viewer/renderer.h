@@ -20,6 +20,8 @@ struct RenderOptions {
     double tauPx = 1.0;  // 0: the leaves
     Background background{};
     Vec3f worldUp{0, 1, 0};  // where the sky is
+    hlod::Clip clip{};       // what is left out
+    hlod::NodeWatch* watch = nullptr;
 };
 
 // How the run time is set up.
@@ -61,6 +63,10 @@ public:
     hlod::FrameRecord renderReference(const hlod::Camera& camera, const RenderOptions& options,
                                       const std::function<void()>& onBatch = {});
 
+    // Another simulated disk for what is read from now on. False, and nothing changes, when none
+    // stands in front of the real one.
+    [[nodiscard]] bool setDisk(const cache::DiskProfile& disk);
+
     // The last frame's picture; fills in record.coveredPixels and fallbackPixels.
     [[nodiscard]] Picture read(hlod::FrameRecord& record);
     [[nodiscard]] hlod::FrameRunner& runner() noexcept { return runner_; }
@@ -71,6 +77,7 @@ private:
     cache::Clock& clock_;
     const cache::PageSource& source_;
     GlDevice device_;
+    cache::DiskLoads* disk_ = nullptr;            // of `ownLoads_`; null: as it is
     std::unique_ptr<cache::LoadQueue> ownLoads_;  // null: the options' are used
     cache::Streaming streaming_;
     hlod::NodeTree tree_;

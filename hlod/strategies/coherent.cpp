@@ -10,6 +10,11 @@ namespace {
 
 constexpr uint32_t kNoParent = UINT32_MAX;
 
+// The relative visibility mu.
+double shareOf(uint64_t visiblePx, double outlinePx) {
+    return outlinePx > 1.0 ? std::min(static_cast<double>(visiblePx) / outlinePx, 1.0) : 1.0;
+}
+
 }  // namespace
 
 // The next frame may be of another device: what this one was asked stays unanswered.
@@ -107,9 +112,8 @@ bool CoherentStrategy::isFine(const Visit& visit, double bias) const {
 }
 
 double CoherentStrategy::biasOf(uint64_t visiblePx, double outlinePx) const {
-    const double share =
-        outlinePx > 1.0 ? std::min(static_cast<double>(visiblePx) / outlinePx, 1.0) : 1.0;
     const StrategyOptions& options = rules_.options;
+    const double share = shareOf(visiblePx, outlinePx);
     return std::max(sigmoidBias(share, options.biasS, options.biasT), options.biasFloor);
 }
 
@@ -133,6 +137,12 @@ void CoherentStrategy::visit(uint32_t index) {
     memory.isRefined = memory.isVisible = false;
     memory.isStop = visit.prediction != Prediction::Refine;
     memory.visitedFrame = frameNumber_;
+    if (NodeWatch* const watch = watchOf(visit)) {
+        watch->predictedFrame = frame_->frameIndex;
+        watch->prediction = visit.prediction == Prediction::Refine ? NodeWatch::Prediction::Refine
+                            : visit.prediction == Prediction::Stop ? NodeWatch::Prediction::Stop
+                                                                   : NodeWatch::Prediction::Delay;
+    }
     if (counting_ == nullptr || crossesNear(frame_->view, *visit.node.boxModel)) {
         seeUnasked(index);
         return;
@@ -182,6 +192,9 @@ void CoherentStrategy::takeLateAnswers() {
             memory->isDoubted = *visiblePx == 0;
             memory->isVisible = !memory->isDoubted;
             if (memory->isVisible) memory->bias = biasOf(*visiblePx, query.outlinePx);
+            if (frame_->watch != nullptr && frame_->watch->page == query.page) {
+                noteAnswer(*frame_->watch, *visiblePx, query.outlinePx, false);
+            }
         }
         lateQueries_.pop_front();
     }
@@ -254,6 +267,7 @@ void CoherentStrategy::seeUnasked(uint32_t index) {
                       static_cast<uint64_t>(frame_->view.camera().heightPx);
     memory.bias = 1.0;
     memory.isStop = isFine(visit, 1.0);
+    if (NodeWatch* const watch = watchOf(visit)) noteAnswer(*watch, visit.visiblePx, 0.0, true);
     markVisible(index);
     emit(index);
 }
@@ -264,6 +278,9 @@ void CoherentStrategy::answer(uint32_t index, uint64_t visiblePx) {
     PredictionCounts& counts = frame_->record.predictions;
     const bool wasStop = visit.prediction == Prediction::Stop;
     visit.visiblePx = visiblePx;
+    if (NodeWatch* const watch = watchOf(visit)) {
+        noteAnswer(*watch, visiblePx, boxPixels(frame_->view, *visit.node.boxModel), false);
+    }
     if (visiblePx == 0) {
         ++(wasStop ? counts.stopHidden : counts.delayHidden);
         if (!wasStop && visit.probeLevel == 0) frame_->sink.hide(visit.node);
@@ -280,6 +297,21 @@ void CoherentStrategy::answer(uint32_t index, uint64_t visiblePx) {
         ++frame_->record.rarnNodes;
     }
     emit(index);
+}
+
+NodeWatch* CoherentStrategy::watchOf(const Visit& visit) const {
+    const bool isWatched = frame_->watch != nullptr && frame_->watch->page == visit.node.page();
+    return isWatched ? frame_->watch : nullptr;
+}
+
+void CoherentStrategy::noteAnswer(NodeWatch& watch, uint64_t visiblePx, double outlinePx,
+                                  bool isUnasked) const {
+    watch.answeredFrame = frame_->frameIndex;
+    watch.isUnasked = isUnasked;
+    watch.visiblePx = visiblePx;
+    watch.outlinePx = outlinePx;
+    watch.relativeVisibility = shareOf(visiblePx, outlinePx);
+    watch.bias = isUnasked ? 1.0 : biasOf(visiblePx, outlinePx);
 }
 
 void CoherentStrategy::markVisible(uint32_t index) {

@@ -91,6 +91,9 @@ private:
     void answer(uint32_t index, uint64_t visiblePx);
     void seeUnasked(uint32_t index);
     void markVisible(uint32_t index);
+    // Null when the node is not the one that is watched.
+    [[nodiscard]] NodeWatch* watchOf(const Visit& visit) const;
+    void noteAnswer(NodeWatch& watch, uint64_t visiblePx, double outlinePx, bool isUnasked) const;
     void emit(uint32_t index);
     void draw(uint32_t index);
     void refine(uint32_t index);

@@ -122,7 +122,8 @@ Camera frameBox(const Camera& camera, const Box3d& box, const Vec3d& direction, 
     return framed;
 }
 
-View::View(const Camera& camera, const Box3d& sceneBox) : camera_(camera) {
+View::View(const Camera& camera, const Box3d& sceneBox, const Clip& clip)
+    : camera_(camera), clip_(clip) {
     const Axes axes = makeAxes(camera.target - camera.eye, camera.up);
     right_ = axes.right;
     up_ = axes.up;
@@ -151,7 +152,8 @@ bool View::intersectsFrustum(const Box3d& box) const {
     for (const Vec3d& normal : sideNormals_) {
         if (glm::dot(normal, centre) + glm::dot(glm::abs(normal), halfSize) < 0.0) return false;
     }
-    return glm::dot(forward_, centre) + glm::dot(glm::abs(forward_), halfSize) >= near_;
+    if (glm::dot(forward_, centre) + glm::dot(glm::abs(forward_), halfSize) < near_) return false;
+    return !clip_.removes(box);
 }
 
 double View::ssePx(double errorModelUnits, const Box3d& box) const {

@@ -4,6 +4,7 @@
 // plane. Plain data and pure functions: any thread.
 #pragma once
 
+#include "hlod/view/clip.h"
 #include "ooc/base/box.h"
 
 #include <array>
@@ -54,7 +55,7 @@ public:
     // Without camera.nearModelUnits the near plane is put before all of `sceneBox`, or at a
     // millionth of its diagonal when the eye is inside or close: reversed float depth makes that
     // free.
-    View(const Camera& camera, const Box3d& sceneBox);
+    View(const Camera& camera, const Box3d& sceneBox, const Clip& clip = {});
 
     [[nodiscard]] const Camera& camera() const noexcept { return camera_; }
     [[nodiscard]] const Vec3d& eye() const noexcept { return camera_.eye; }
@@ -64,9 +65,10 @@ public:
     [[nodiscard]] double tanX() const noexcept { return tanX_; }  // of half the angle of view
     [[nodiscard]] double tanY() const noexcept { return tanY_; }
     [[nodiscard]] double nearModelUnits() const noexcept { return near_; }
+    [[nodiscard]] const Clip& clip() const noexcept { return clip_; }
 
-    // False only when all of the box lies outside one plane of the frustum or before the near
-    // plane: never for a box that reaches the picture.
+    // False only when all of the box lies outside one plane of the frustum, before the near plane
+    // or in what the clip leaves out: never for a box that reaches the picture.
     [[nodiscard]] bool intersectsFrustum(const Box3d& box) const;
     // Pixels that `errorModelUnits` can span at the box's nearest point: error * height /
     // (2 tan(fovy/2) * distance of eye to box). At most what it is at the near plane: nothing
@@ -77,6 +79,7 @@ public:
 
 private:
     Camera camera_;
+    Clip clip_;
     Vec3d right_, up_, forward_;
     double tanX_ = 1, tanY_ = 1, near_ = 1;
     std::array<Vec3d, 4> sideNormals_;  // inwards; the planes pass through the eye

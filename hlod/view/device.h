@@ -12,6 +12,7 @@ namespace pagoda::hlod {
 class Device {
 public:
     virtual ~Device() = default;
+    // What the view's clip cuts away or hides is not drawn by devices for pictures.
     virtual void beginFrame(const View& view) = 0;
     // Draws the opaque part of a node whose page is uploaded. Draws may be gathered until an answer
     // depends on them.

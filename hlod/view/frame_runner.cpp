@@ -45,13 +45,20 @@ double requestPriority(double visiblePx, double excessError) {
 // Hears the strategy: pages go to the cache, draws to the device, all of it into the cut.
 class FrameRunner::Sink final : public FrameSink {
 public:
-    Sink(FrameRunner& runner, FrameRecord& record)
-        : runner_(runner), residency_(runner.streaming_.residency()), record_(record) {}
+    Sink(FrameRunner& runner, FrameRecord& record, NodeWatch* watch)
+        : runner_(runner),
+          residency_(runner.streaming_.residency()),
+          record_(record),
+          watch_(watch) {}
 
     cache::PageState state(const Node& node) const override {
         return residency_.state(node.page(), node.slot);
     }
     cache::PageState want(const Node& node, double priority, Use use) override {
+        if (isWatched(node)) {
+            watch_->wantedFrame = record_.frameIndex;
+            watch_->priority = priority;
+        }
         const cache::PageState state =
             residency_.want({node.page(), *node.record, priority, node.slot}, use == Use::StandIn);
         if (runner_.doesPrefetch_) {
@@ -61,18 +68,23 @@ public:
     }
     void keep(const Node& node) override { residency_.keep(node.page(), node.slot); }
     void refine(const Node& node) override {
+        if (isWatched(node)) watch_->refinedFrame = record_.frameIndex;
         runner_.cut_.refine(node);
         if (runner_.doesPrefetch_) runner_.prefetcher_.noteRefined(node);
         // A refined node is not drawn, but its zippers to unrefined neighbours are.
         if ((node.record->flags & ooc::kNodeHasZippers) != 0) want(node, 0.0, Use::Cut);
     }
     void draw(const Node& node, Use use) override {
+        if (isWatched(node)) {
+            (use == Use::Cut ? watch_->drawnFrame : watch_->standInFrame) = record_.frameIndex;
+        }
         runner_.cut_.draw(node, use == Use::StandIn);
         record_.standIns += use == Use::StandIn;
         if (runner_.doesPrefetch_ && use == Use::Cut) runner_.prefetcher_.noteDrawn(node);
         runner_.device_.draw(node);
     }
     void hide(const Node& node) override {
+        if (isWatched(node)) watch_->hiddenFrame = record_.frameIndex;
         runner_.cut_.hide(node);
         if (runner_.doesPrefetch_) runner_.prefetcher_.noteHidden(node);
         ++record_.hiddenNodes;
@@ -83,9 +95,14 @@ public:
     PyramidVisibility* pyramid() override { return runner_.device_.pyramid(); }
 
 private:
+    [[nodiscard]] bool isWatched(const Node& node) const {
+        return watch_ != nullptr && watch_->page == node.page();
+    }
+
     FrameRunner& runner_;
     cache::Residency& residency_;
     FrameRecord& record_;
+    NodeWatch* watch_;
 };
 
 FrameRunner::FrameRunner(cache::Streaming& streaming, NodeTree& tree, Device& device,
@@ -126,13 +143,14 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
         sceneBox_ = *root->boxModel;
         wantRoot(*root);
     }
-    const View view(camera, sceneBox_);
+    const View view(camera, sceneBox_, options.clip);
+    if (lastClip_.hidden != options.clip.hidden) strategy.forget();
     record.streamMs = nowMs() - beginMs;
 
     const double traverseBeginMs = nowMs();
     device_.beginFrame(view);
     late_.beginFrame(device_.counting());
-    Sink sink(*this, record);
+    Sink sink(*this, record, options.watch);
     FrameContext frame{view,
                        tree_,
                        record.effectiveTauPx,
@@ -140,8 +158,9 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
                        sink,
                        record,
                        lastRecord_ ? &*lastRecord_ : nullptr,
-                       lastCamera_ == camera,
-                       options.probeLevels};
+                       isSameView(camera, options),
+                       options.probeLevels,
+                       options.watch};
     if (doesPrefetch_) prefetcher_.beginFrame(record.frameIndex, tree_);
     strategy.traverse(frame);
     const double traversedMs = nowMs();
@@ -154,7 +173,7 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
 
     const bool maySend = controlTau(camera, strategy, options);
     if (doesPrefetch_) {
-        prefetcher_.run(camera, sceneBox_, record.effectiveTauPx, tree_, streaming_.residency());
+        prefetcher_.run(view, sceneBox_, record.effectiveTauPx, tree_, streaming_.residency());
         record.prefetchOff = prefetcher_.offText();
     }
     streaming_.endFrame(!maySend);
@@ -166,8 +185,8 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
     record.heightPx = camera.heightPx;
     account(record, before);
     const bool isComplete = record.missingPages == 0 && !tauControl_.isMoving();
-    const bool isSameView = lastCamera_ == camera;
-    const bool drawsTheSame = isSameView && isComplete && lastDrawnHash_ == cut_.drawnHash();
+    const bool drawsTheSame =
+        isSameView(camera, options) && isComplete && lastDrawnHash_ == cut_.drawnHash();
     framesDrawnTheSame_ = drawsTheSame ? framesDrawnTheSame_ + 1 : 0;
     // A stand-in may hide what it stands for, which is not asked for then: until the next frame.
     const bool decidesTheSame = lastToldHash_ == cut_.toldHash() && record.standIns == 0;
@@ -178,6 +197,7 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
     record.isSettled = isPlain || (drawsTheSame && isAnswered &&
                                    (decidesTheSame || framesDrawnTheSame_ >= kSteadyFrames));
     lastCamera_ = camera;
+    lastClip_ = options.clip;
     lastToldHash_ = cut_.toldHash();
     lastDrawnHash_ = cut_.drawnHash();
     lastRecord_ = record;
@@ -212,7 +232,7 @@ bool FrameRunner::controlTau(const Camera& camera, const Strategy& strategy,
     hasLearnt_ = hasLearnt_ || isStuck || uploadedBytes - uploadedWhenItFitted_ >= budgetBytes;
     const bool isLearning = isMissing && strategy.learnsWhatIsHidden() && !hasLearnt_;
     tauControl_.update({options.tauPx, residency.demandBytes(), budgetBytes, isStuck,
-                        lastCamera_ == camera, isLearning, isMissing});
+                        isSameView(camera, options), isLearning, isMissing});
     return tauControl_.fits() || isLearning;
 }
 
@@ -258,7 +278,7 @@ FrameRecord FrameRunner::settle(const Camera& camera, Strategy& strategy,
     // A live frame must find nothing to do afterwards.
     uint32_t probeLevels = 1;
     for (int i = 0; i < kMaxSettleFrames && completeFrames < kRestlessFrames; ++i) {
-        record = run(camera, strategy, {options.tauPx, probeLevels});
+        record = run(camera, strategy, {options.tauPx, probeLevels, options.clip, options.watch});
         if (onFrame) onFrame(record);
         const bool hasLooked = probeLevels == options.probeLevels || !strategy.learnsWhatIsHidden();
         if (record.isSettled && hasLooked) break;

@@ -18,6 +18,8 @@ namespace pagoda::hlod {
 struct FrameOptions {
     double tauPx = 1.0;                 // 0: the leaves
     uint32_t probeLevels = UINT32_MAX;  // FrameContext
+    Clip clip{};                        // another set of hidden objects: the strategy forgets
+    NodeWatch* watch = nullptr;         // filled in; outlives the frame
 };
 
 class FrameRunner {
@@ -58,6 +60,9 @@ private:
     };
     [[nodiscard]] Progress progress();
     void wantRoot(const Node& root);
+    [[nodiscard]] bool isSameView(const Camera& camera, const FrameOptions& options) const {
+        return lastCamera_ == camera && lastClip_ == options.clip;
+    }
     // May what is missing be sent for?
     [[nodiscard]] bool controlTau(const Camera& camera, const Strategy& strategy,
                                   const FrameOptions& options);
@@ -78,6 +83,7 @@ private:
     FrameCut cut_;
     Box3d sceneBox_;
     std::optional<Camera> lastCamera_;
+    Clip lastClip_;
     Progress lastProgress_;
     std::optional<FrameRecord> lastRecord_;
     uint64_t lastToldHash_ = 0, lastDrawnHash_ = 0;

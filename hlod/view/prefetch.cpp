@@ -181,16 +181,16 @@ double Prefetcher::lookAheadFrames() const {
     return std::clamp(std::ceil(latencyFrames_) + 2.0, 3.0, kMaxLookAhead);
 }
 
-void Prefetcher::run(const Camera& camera, const Box3d& sceneBox, double tauPx, NodeTree& tree,
+void Prefetcher::run(const View& now, const Box3d& sceneBox, double tauPx, NodeTree& tree,
                      cache::Residency& residency) {
-    motion_.note(camera, sceneBox);
+    motion_.note(now.camera(), sceneBox);
     std::erase_if(missingSince_,
                   [&](const auto& item) { return item.second + kSoonFrames < frame_; });
     const std::optional<Camera> there = motion_.in(lookAheadFrames());
     if (!there || tauPx <= 0.0) return;
     const auto root = tree.root();
     if (!root) return;
-    const View now(camera, sceneBox), then(*there, sceneBox);
+    const View then(*there, sceneBox, now.clip());
     Walk walk{now, then, tauPx, tree, residency};
     visit(walk, *root);
 }

@@ -61,8 +61,9 @@ public:
     void noteDrawn(const Node& node) { mark(node, What::Drawn); }
     void noteHidden(const Node& node) { mark(node, What::Hidden); }
 
-    // After the traversal: asks `residency` for what the next frames need, if the camera moves.
-    void run(const Camera& camera, const Box3d& sceneBox, double tauPx, NodeTree& tree,
+    // After the traversal of `now`: asks `residency` for what the next frames need, if the camera
+    // moves.
+    void run(const View& now, const Box3d& sceneBox, double tauPx, NodeTree& tree,
              cache::Residency& residency);
 
     // Share of the bytes foretold lately for this reason that were wanted soon after.

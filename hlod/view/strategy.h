@@ -12,6 +12,7 @@
 #include "hlod/view/camera.h"
 #include "hlod/view/frame_record.h"
 #include "hlod/view/node_tree.h"
+#include "hlod/view/node_watch.h"
 #include "hlod/view/visibility.h"
 
 namespace pagoda::hlod {
@@ -56,6 +57,7 @@ struct FrameContext {
     // How far below a stand-in absent nodes are asked for. All the way is soonest sharp; one level
     // reads least, since what is nearer hides more of what is behind it than its stand-in does.
     uint32_t probeLevels = UINT32_MAX;
+    NodeWatch* watch = nullptr;  // null: no node is asked about
 };
 
 class Strategy {

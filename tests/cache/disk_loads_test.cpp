@@ -59,6 +59,18 @@ void expectTimes(const std::map<uint64_t, double>& times,
     }
 }
 
+TEST(DiskLoads, AnotherProfileHoldsForWhatIsSentFromNowOn) {
+    Disk disk({.bytesPerS = 1000, .latencyS = 0.1});
+    disk.send(1, 0, 900);  // 0.1 + 0.9
+    disk.clock.advance(0.2);
+    disk.loads->setProfile({.bytesPerS = 2000, .latencyS = 0.05});
+    disk.send(2, 5000, 100);  // 0.2 + 0.05 + 0.05: it does not wait for the slow one
+    disk.clock.advance(0.01);
+    disk.loads->setProfile({});
+    disk.send(3, 9000, 500);
+    expectTimes(disk.arrivalsS(), {{1, 1.0}, {2, 0.3}, {3, 0.21}});
+}
+
 TEST(DiskLoads, LatenciesOverlapAndTransfersShareOneLine) {
     Disk disk({.bytesPerS = 1000, .latencyS = 0.1});
     disk.send(1, 0, 200);     // 0.1 + 0.2

@@ -17,6 +17,7 @@ namespace pagoda::test {
 struct Triangle {
     Vec3i corners[3];
     uint32_t colour = 0xFFB0B0B0u;  // translucent when its alpha is below 255
+    uint32_t object = 0;
 };
 
 class MemoryScene final : public cache::PageSource {
@@ -93,10 +94,18 @@ public:
         ooc::Page page;
         ooc::PageMesh& mesh = page.mesh;
         std::vector<Triangle> sorted = triangles;
-        std::stable_partition(sorted.begin(), sorted.end(),
-                              [](const Triangle& t) { return t.colour >> 24 == 255; });
+        const auto isTranslucent = [](const Triangle& t) { return t.colour >> 24 != 255; };
+        std::stable_sort(sorted.begin(), sorted.end(), [&](const Triangle& a, const Triangle& b) {
+            return std::pair(isTranslucent(a), a.object) < std::pair(isTranslucent(b), b.object);
+        });
         std::map<std::pair<std::vector<int>, uint32_t>, uint32_t> welded;
         for (const Triangle& t : sorted) {
+            const bool isFirst = &t == &sorted.front();
+            if (isFirst || t.object != (&t)[-1].object ||
+                isTranslucent(t) != isTranslucent((&t)[-1])) {
+                mesh.runs.push_back({0, t.object, isTranslucent(t) ? 1u : 0u});
+            }
+            ++mesh.runs.back().triangleCount;
             for (const Vec3i& p : t.corners) {
                 const auto next = static_cast<uint32_t>(mesh.positions.size());
                 const auto [at, isNew] =
@@ -109,11 +118,10 @@ public:
             }
         }
         const auto opaque = static_cast<uint32_t>(std::count_if(
-            sorted.begin(), sorted.end(), [](const Triangle& t) { return t.colour >> 24 == 255; }));
+            sorted.begin(), sorted.end(), [&](const Triangle& t) { return !isTranslucent(t); }));
         mesh.partStart.fill(opaque);
         mesh.partStart[0] = 0;
         mesh.partStart[ooc::kPageParts] = mesh.triangleCount();
-        mesh.runs = {{mesh.triangleCount(), 0, 0}};
         return page;
     }
 

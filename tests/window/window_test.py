@@ -38,6 +38,9 @@ class Test:
                  "--force")
         self.run("build", self.folder / "room.glb", "-o", self.database, "--up", "z",
                  "--node-triangles", 1024, "--force")
+        info = json.loads(self.run("info", self.database, "--json").stdout)
+        self.objects = info["objects"]
+        self.middle = [(a + b) / 2 for a, b in zip(info["box"]["min"], info["box"]["max"])]
 
     def run(self, *arguments, **popen):
         return subprocess.run([self.binary, "--quiet", *map(str, arguments)], check=True,
@@ -140,6 +143,78 @@ class Test:
         node, triangle = words[2 * (300 * WIDTH + 250):][:2]
         check(pick["node"] == table["nodes"][node - 1] and pick["triangle"] == triangle,
               f"picked {pick}, render drew {table['nodes'][node - 1]} {triangle}")
+
+    def test_a_click_names_the_object_and_hiding_it_shows_what_is_behind(self):
+        camera = json.dumps({"eye": [-9, -7, 12], "target": [4, 4, 1.5], "up": [0, 0, 1]})
+        with self.open("--strategy", "coh", "--tau", 8, "--camera", camera) as window:
+            window.wait_settled()
+            window.click(330, 250)
+            first = window.wait_event("exact")
+            check(first["path"] and first["faults"] == [], f"no name: {first}")
+            window.key("Delete")
+            check(window.wait_for("something hidden", lambda line: line["event"] == "frame" and
+                                  line["settled"] and line["hidden_objects"] > 0), "")
+            window.click(330, 250)
+            second = window.wait_event("exact")
+            check(second["point"] is None or second["object"] != first["object"],
+                  "the hidden object was picked")
+            if second["point"]:
+                eye = json.loads(camera)["eye"]
+                check(distance(second["point"], eye) > distance(first["point"], eye),
+                      "what is behind is nearer")
+                check(abs(second["from_last"] - distance(second["point"], first["point"])) < 1e-9,
+                      "the distance between both picks is wrong")
+            window.key("u")
+            window.wait_settled(hidden_objects=0)
+            window.click(330, 250)
+            check(window.wait_event("exact")["object"] == first["object"], "it did not come back")
+            window.key("shift+Delete")
+            window.wait_for("the others hidden", lambda line: line["event"] == "frame" and
+                            line["settled"] and line["hidden_objects"] > 0)
+            window.click(330, 250)
+            check(window.wait_event("exact")["object"] == first["object"], "it is not alone")
+
+    def test_a_pick_is_exact_whatever_is_resident(self):
+        camera = json.dumps({"eye": [-9, -7, 12], "target": [4, 4, 1.5], "up": [0, 0, 1]})
+        points = []
+        for tau in (64, 0.25):
+            with self.open("--strategy", "frustum", "--tau", tau, "--camera", camera) as window:
+                window.wait_settled()
+                window.click(300, 280)
+                points.append(window.wait_event("exact"))
+        for key in ("point", "leaf", "triangle", "object", "path"):
+            check(points[0][key] == points[1][key], f"{key} depends on tau: {points}")
+
+    def test_a_section_lets_the_eye_and_the_pick_in(self):
+        with self.open("--strategy", "coh") as window:
+            window.wait_settled()
+            window.click(330, 250)
+            before = window.wait_event("exact")
+            window.key("n")
+            window.wait_settled(section=True)
+            window.click(330, 250)
+            after = window.wait_event("exact")
+            check(after["point"] is None or after["point"] != before["point"],
+                  "the cut away surface was picked")
+            if after["point"]:
+                # The default plane: x, in the middle; what is greater is cut away.
+                check(after["point"][0] <= self.middle[0] + 1e-6, f"{after} lies beyond the plane")
+            window.key("n")
+            window.wait_settled(section=False)
+
+    def test_the_tree_of_objects_is_read_when_it_is_opened_and_names_are_found(self):
+        with self.open() as window:
+            window.wait_settled()
+            check(not [line for line in window.lines() if line["event"] == "objects"],
+                  "objects were read though nobody asked")
+            window.key("b")
+            window.wait_for("rows of the tree", lambda line: line["event"] == "objects" and
+                            line["tree"] == self.objects and line["rows"] > 0)
+            window.click(500, 57)  # the search
+            window.xdotool("type", "oo")
+            found = window.wait_for("matches", lambda line: line["event"] == "objects" and
+                                    line["matches"] > 0 and not line["searching"])
+            check(found["matches"] <= self.objects, f"{found}")
 
     def test_what_is_frozen_stays_while_the_eye_leaves(self):
         with self.open("--strategy", "coh") as window:

@@ -142,6 +142,10 @@ void GlfwWindow::handleEvents(double waitSeconds) {
     }
 }
 
+void GlfwWindow::wake() {
+    glfwPostEmptyEvent();
+}
+
 void GlfwWindow::swap() {
     glfwSwapBuffers(window_);
 }

@@ -42,6 +42,8 @@ public:
 
     // Hands over what has happened; waits for it at most so long (0: not at all).
     void handleEvents(double waitSeconds);
+    // Ends the wait. From any thread, as long as a window is there.
+    static void wake();
     void swap();
 
     [[nodiscard]] glm::ivec2 framebufferPx() const;

@@ -2,6 +2,7 @@
 
 #include "ooc/base/number_text.h"
 #include "viewer/window/input_map.h"
+#include "viewer/window/panel_parts.h"
 #include "viewer/window/ui.h"
 
 #include <fmt/format.h>
@@ -12,23 +13,6 @@
 
 namespace pagoda::viewer {
 namespace {
-
-constexpr ImGuiWindowFlags kFixed =
-    ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
-    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
-const ImVec4 kAccent(0.56f, 0.80f, 0.94f, 1.0f);
-const ImVec4 kAlarm(1.0f, 0.50f, 0.42f, 1.0f);
-
-ImVec2 displaySize() {
-    return ImGui::GetIO().DisplaySize;
-}
-
-void place(float shareX, float shareY, float marginX, float marginY) {
-    const ImVec2 size = displaySize();
-    ImGui::SetNextWindowPos(
-        {marginX + shareX * (size.x - 2 * marginX), marginY + shareY * (size.y - 2 * marginY)},
-        ImGuiCond_Always, {shareX, shareY});
-}
 
 bool strategyCombo(ViewSettings& settings) {
     bool hasChanged = false;
@@ -49,19 +33,11 @@ bool strategyCombo(ViewSettings& settings) {
     return hasChanged;
 }
 
-bool slider(const char* name, double& value, double least, double greatest, const char* format,
-            ImGuiSliderFlags flags = 0) {
-    ImGui::TextDisabled("%s", name);
-    ImGui::SetNextItemWidth(-1.0f);
-    const std::string id = std::string("##") + name;
-    return ImGui::SliderScalar(id.c_str(), ImGuiDataType_Double, &value, &least, &greatest, format,
-                               flags | ImGuiSliderFlags_AlwaysClamp);
-}
-
 // Megabytes, on a logarithmic scale; tells once the handle is let go.
 bool budgetSlider(const char* name, uint64_t& bytes, double leastMb, double greatestMb) {
     double megabytes = static_cast<double>(bytes) / 1e6;
-    if (slider(name, megabytes, leastMb, greatestMb, "%.0f MB", ImGuiSliderFlags_Logarithmic)) {
+    if (labelledSlider(name, megabytes, leastMb, greatestMb, "%.0f MB",
+                       ImGuiSliderFlags_Logarithmic)) {
         bytes = static_cast<uint64_t>(megabytes * 1e6);
     }
     return ImGui::IsItemDeactivatedAfterEdit();
@@ -93,32 +69,25 @@ bool runtimeSection(ViewSettings& settings) {
     return hasChanged;
 }
 
-std::string whyNotFiner(const Pick& pick, const hlod::FrameRecord& record) {
-    if (pick.node.isLeaf()) return "a leaf: nothing is finer";
-    if (pick.isStandIn) return "stands in: finer pages are on their way";
-    if (pick.ssePx <= record.effectiveTauPx) return "its error is within tau";
-    return "little of it is seen, or a neighbour needs it";
-}
-
 }  // namespace
 
 Change showSteering(ViewSettings& settings, const hlod::FrameRecord& record) {
     Change change;
     const float em = ImGui::GetFontSize();
-    place(1.0f, 0.0f, 0.7f * em, 0.7f * em);
+    placePanel(1.0f, 0.0f, 0.7f * em, 0.7f * em);
     ImGui::SetNextWindowSize({17.0f * em, 0.0f});
-    ImGui::Begin("steering", nullptr, kFixed);
+    ImGui::Begin("steering", nullptr, kFixedPanel);
     change.isLook |= strategyCombo(settings);
-    change.isLook |= slider("tau, pixels (, .)", settings.tauPx, 0.25, 64.0, "%.2f",
-                            ImGuiSliderFlags_Logarithmic);
+    change.isLook |= labelledSlider("tau, pixels (, .)", settings.tauPx, 0.25, 64.0, "%.2f",
+                                    ImGuiSliderFlags_Logarithmic);
     if (record.effectiveTauPx > 1.001 * settings.tauPx) {
         ImGui::TextColored(kAccent, "now %.2f", record.effectiveTauPx);
     }
     ImGui::Separator();
     change.isLook |= ImGui::Checkbox("keep a frame rate while moving", &settings.holdsFrameRate);
     if (settings.holdsFrameRate) {
-        change.isLook |= slider("frames a second", settings.targetFps, 2.0, 120.0, "%.0f",
-                                ImGuiSliderFlags_Logarithmic);
+        change.isLook |= labelledSlider("frames a second", settings.targetFps, 2.0, 120.0, "%.0f",
+                                        ImGuiSliderFlags_Logarithmic);
     }
     change.isLook |= ImGui::Checkbox("read ahead", &settings.runtime.doesPrefetch);
     if (!record.prefetchOff.empty()) ImGui::TextDisabled("off: %s", record.prefetchOff.c_str());
@@ -137,9 +106,9 @@ Change showSteering(ViewSettings& settings, const hlod::FrameRecord& record) {
 
 void showKeys() {
     const float em = ImGui::GetFontSize();
-    place(0.5f, 0.45f, em, em);
+    placePanel(0.5f, 0.45f, em, em);
     ImGui::SetNextWindowBgAlpha(0.95f);
-    ImGui::Begin("keys", nullptr, kFixed);
+    ImGui::Begin("keys", nullptr, kFixedPanel);
     if (ImGui::BeginTable("keys", 2)) {
         ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 12.0f * em);
         ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthFixed, 26.5f * em);
@@ -159,43 +128,12 @@ void showKeys() {
     ImGui::End();
 }
 
-void showPick(const Pick& pick, const hlod::FrameRecord& record) {
-    const float em = ImGui::GetFontSize();
-    place(1.0f, 1.0f, 0.7f * em, 2.6f * em);
-    ImGui::Begin("pick", nullptr, kFixed);
-    ImGui::TextColored(kAccent, "node 0x%llx", static_cast<unsigned long long>(pick.node.id.value));
-    if (ImGui::BeginTable("rows", 2)) {
-        const Vec3d& p = pick.pointModel;
-        numberRow("level",
-                  fmt::format("{}{}", pick.node.id.depth(), pick.node.isLeaf() ? ", leaf" : ""));
-        numberRow("triangles",
-                  fmt::format("{}, {} in the leaves below", formatCount(pick.node.triangleCount),
-                              formatCount(pick.node.subtreeTriangles)));
-        numberRow("error", fmt::format("{} units, {:.3g} px here",
-                                       lengthText(pick.node.errorModelUnits), pick.errorHerePx));
-        numberRow("SSE", fmt::format("{:.3g} px of {:.3g}, nearest of its box", pick.ssePx,
-                                     record.effectiveTauPx));
-        numberRow("page", formatBytes(pick.node.pageBytes));
-        numberRow("here", fmt::format("{:.10g}  {:.10g}  {:.10g}", p.x, p.y, p.z));
-        numberRow("distance", lengthText(pick.distanceModelUnits));
-        if (pick.fromLastModelUnits)
-            numberRow("from the last", lengthText(*pick.fromLastModelUnits));
-        numberRow("not finer", whyNotFiner(pick, record));
-        if ((pick.node.flags & ooc::kNodeSloppy) != 0)
-            numberRow("clustered", "parts could not merge");
-        if ((pick.node.flags & ooc::kNodeStuck) != 0)
-            numberRow("stuck", "locked borders keep it fine");
-        ImGui::EndTable();
-    }
-    ImGui::End();
-}
-
 void showMessages(const std::vector<Message>& messages) {
     if (messages.empty()) return;
     const float em = ImGui::GetFontSize();
-    place(0.5f, 1.0f, em, 3.2f * em);
-    ImGui::Begin("messages", nullptr, kFixed);
-    ImGui::PushTextWrapPos(std::min(40.0f * em, 0.8f * displaySize().x));
+    placePanel(0.5f, 1.0f, em, 3.2f * em);
+    ImGui::Begin("messages", nullptr, kFixedPanel);
+    ImGui::PushTextWrapPos(std::min(40.0f * em, 0.8f * ImGui::GetIO().DisplaySize.x));
     for (const Message& message : messages) {
         if (message.isError) {
             ImGui::TextColored(kAlarm, "%s", message.text.c_str());
@@ -210,10 +148,10 @@ void showMessages(const std::vector<Message>& messages) {
 void showFooter(const Navigation* navigation, const ViewSettings& settings,
                 const std::vector<std::string>& states) {
     const float em = ImGui::GetFontSize();
-    place(0.0f, 1.0f, 0.7f * em, 0.5f * em);
+    placePanel(0.0f, 1.0f, 0.7f * em, 0.5f * em);
     ImGui::SetNextWindowBgAlpha(0.5f);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.6f * em, 0.25f * em});
-    ImGui::Begin("footer", nullptr, kFixed | ImGuiWindowFlags_NoInputs);
+    ImGui::Begin("footer", nullptr, kFixedPanel | ImGuiWindowFlags_NoInputs);
     if (navigation != nullptr) {
         constexpr std::array kModes = {"orbit", "fly", "walk"};
         ImGui::TextColored(kAccent, "%s", kModes[static_cast<size_t>(navigation->mode())]);
@@ -237,8 +175,8 @@ void showFooter(const Navigation* navigation, const ViewSettings& settings,
 }
 
 void showWelcome() {
-    place(0.5f, 0.5f, 0.0f, 0.0f);
-    ImGui::Begin("welcome", nullptr, kFixed);
+    placePanel(0.5f, 0.5f, 0.0f, 0.0f);
+    ImGui::Begin("welcome", nullptr, kFixedPanel);
     ImGui::TextUnformatted("Drop a database (NAME.pagoda) here.");
     ImGui::TextDisabled("Make one from a mesh: pagoda build MESH -o NAME.pagoda");
     ImGui::End();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "viewer/navigation.h"
+#include "viewer/window/inspection.h"
 #include "viewer/window/scene.h"
 #include "viewer/window/timeline.h"
 #include "viewer/window/view_settings.h"
@@ -31,13 +32,20 @@ struct Streaming {
 struct Change {
     bool isLook = false;     // draw again
     bool isRuntime = false;  // budgets and the like: begin anew
+    bool isDisk = false;     // the simulated disk: holds from now on
 };
 
 void showHud(const Scene& scene, const ViewSettings& settings, const Streaming& streaming,
              const Timeline& timeline);
 [[nodiscard]] Change showSteering(ViewSettings& settings, const hlod::FrameRecord& record);
 void showKeys();
-void showPick(const Pick& pick, const hlod::FrameRecord& record);
+// Below: pick_panel.cpp, section_panel.cpp, loading_panel.cpp.
+void showPick(const Scene& scene, const Inspection& inspection);
+// The plane of `settings.section`, which is on.
+[[nodiscard]] Change showSection(Section& section, const Scene& scene,
+                                 const Inspection& inspection);
+// What was read, by codec, and the disk that is simulated.
+[[nodiscard]] Change showLoading(Scene& scene, cache::DiskProfile& disk);
 void showMessages(const std::vector<Message>& messages);
 // One line at the bottom: how one moves, what is special, where help is.
 void showFooter(const Navigation* navigation, const ViewSettings& settings,

@@ -14,19 +14,22 @@ constexpr double kGreatestMovingTauPx = 16.0;
 constexpr double kFirstTauPx = 40.0;
 constexpr uint64_t kMaxBlankFrames = 200;
 
+// Through a pixel's centre, 1 long along the direction of view.
+Vec3d directionOf(const hlod::View& view, int xPx, int yPx) {
+    const hlod::Camera& camera = view.camera();
+    const double x = 2.0 * (xPx + 0.5) / camera.widthPx - 1.0;
+    const double y = 1.0 - 2.0 * (yPx + 0.5) / camera.heightPx;
+    return view.forward() + view.right() * (x * view.tanX()) + view.up() * (y * view.tanY());
+}
+
 // The model's point that `sample` shows at the pixel's centre.
 struct SeenPoint {
     Vec3d pointModel;
     double distanceModelUnits;
 };
 SeenPoint pointOf(const PixelSample& sample, const hlod::View& view, int xPx, int yPx) {
-    const hlod::Camera& camera = view.camera();
     const double along = view.nearModelUnits() / static_cast<double>(sample.reversedDepth);
-    const double x = 2.0 * (xPx + 0.5) / camera.widthPx - 1.0;
-    const double y = 1.0 - 2.0 * (yPx + 0.5) / camera.heightPx;
-    const Vec3d ray =
-        view.forward() + view.right() * (x * view.tanX()) + view.up() * (y * view.tanY());
-    return {view.eye() + ray * along, along};
+    return {view.eye() + directionOf(view, xPx, yPx) * along, along};
 }
 
 }  // namespace
@@ -47,6 +50,7 @@ void Scene::restart(const RendererOptions& options) {
     renderer_.reset();  // its GPU memory goes before new one is asked for
     renderer_ = std::make_unique<Renderer>(database_.header().lattice, source_, options);
     record_ = {};
+    watch(std::nullopt);
     hasDrawn_ = false;
     framesSinceStart_ = 0;
 }
@@ -105,6 +109,8 @@ const hlod::FrameRecord& Scene::draw(const hlod::Camera& camera, const ViewSetti
     RenderOptions options;
     options.tauPx = tauFor(settings, isMoving);
     options.worldUp = Vec3f(hlod::upVector(up_));
+    options.clip = clip_;
+    options.watch = isWatching_ ? &watch_ : nullptr;
     setTint(settings);
     renderer_->runner().setPrefetch(settings.runtime.doesPrefetch && !frozen_);
     hlod::Strategy& strategy = strategyFor(settings);
@@ -171,6 +177,24 @@ std::optional<Pick> Scene::pick(glm::dvec2 px) {
     };
     if (take(cut.drawn(), cut.drawnAsStandIn()) || take(cut.zipped(), {})) return pick;
     return std::nullopt;
+}
+
+hlod::LeafRay Scene::rayThrough(glm::dvec2 px) const {
+    const hlod::View view(camera_, box());
+    return {.originModel = view.eye(),
+            .direction = directionOf(view, static_cast<int>(px.x), static_cast<int>(px.y)),
+            .leastAlong = view.nearModelUnits(),
+            .clip = clip_};
+}
+
+void Scene::watch(std::optional<ooc::NodeId> node) {
+    isWatching_ = node.has_value();
+    watch_ = {};
+    if (node) watch_.page = {0, *node};
+}
+
+const cache::PageStory* Scene::storyOf(ooc::NodeId node) const {
+    return renderer_->runner().streaming().residency().history().find({0, node});
 }
 
 double Scene::distanceSeen() {

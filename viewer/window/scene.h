@@ -4,6 +4,7 @@
 
 #include "cache/page_source.h"
 #include "hlod/view/frame_rate_control.h"
+#include "hlod/view/leaf_ray.h"
 #include "ooc/store/database.h"
 #include "viewer/renderer.h"
 #include "viewer/window/frozen_cut.h"
@@ -42,6 +43,10 @@ public:
     // nothing left to draw with: the scene must go.
     void restart(const RendererOptions& options);
 
+    // What is left out of the frames that follow.
+    void setClip(const hlod::Clip& clip) { clip_ = clip; }
+    [[nodiscard]] const hlod::Clip& clip() const noexcept { return clip_; }
+
     // Draws a frame. `isMoving`: the view will not stay as it is.
     const hlod::FrameRecord& draw(const hlod::Camera& camera, const ViewSettings& settings,
                                   bool isMoving);
@@ -59,14 +64,24 @@ public:
     // Of the last frame; a pixel from the top left.
     [[nodiscard]] std::optional<Vec3d> surfaceAt(glm::dvec2 px);
     [[nodiscard]] std::optional<Pick> pick(glm::dvec2 px);
+    // From the eye through a pixel's centre, 1 long along the direction of view, with the clip.
+    [[nodiscard]] hlod::LeafRay rayThrough(glm::dvec2 px) const;
+    // Frames note what becomes of this node; nothing: of none.
+    void watch(std::optional<ooc::NodeId> node);
+    [[nodiscard]] const hlod::NodeWatch& watched() const noexcept { return watch_; }
+    // Null when nothing is known of its page (any more).
+    [[nodiscard]] const cache::PageStory* storyOf(ooc::NodeId node) const;
     // To the nearest of some places in the picture; infinite where nothing is.
     [[nodiscard]] double distanceSeen();
     [[nodiscard]] Picture read();
 
     [[nodiscard]] Renderer& renderer() noexcept { return *renderer_; }
     [[nodiscard]] const ooc::Database& database() const noexcept { return database_; }
+    [[nodiscard]] const cache::PageSource& source() const noexcept { return source_; }
     [[nodiscard]] Box3d box() const { return renderer_->sceneBox(); }
     [[nodiscard]] hlod::UpAxis up() const noexcept { return up_; }
+    [[nodiscard]] const hlod::Camera& camera() const noexcept { return camera_; }  // last frame's
+    [[nodiscard]] double clockS() const { return renderer_->runner().streaming().clock().nowS(); }
     [[nodiscard]] std::string name() const;
     [[nodiscard]] uint64_t triangles() const noexcept { return triangles_; }  // of all leaves
     // Of the database as a whole and of the last frame.
@@ -92,6 +107,9 @@ private:
     bool hasDrawn_ = false, isWireframe_ = false;
     uint64_t framesSinceStart_ = 0;
     hlod::Camera camera_;  // of the last frame
+    hlod::Clip clip_;
+    hlod::NodeWatch watch_;
+    bool isWatching_ = false;
     hlod::FrameRecord record_;
 };
 

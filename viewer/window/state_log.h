@@ -4,8 +4,10 @@
 //    "mode": "orbit", "strategy": "auto", "tau": 1, "effective_tau": 1, "drawn_nodes": 12,
 //    "drawn_triangles": 4000, "missing_pages": 0, "settled": true, "frozen": false,
 //    "colours": "the model's", "frame_ms": 3.1, "ui_ms": 0.2, "ui_gl_ms": 0.4}
-// Others: opened (file), resized, pick (node, point, ...), screenshot (file), message (text,
-// is_error), camera (json: copied), path (file, frames), closed (frames).
+// Others: opened (file), resized, pick (node, point, ...), exact (the pick at full resolution:
+// point, leaf, triangle, object, path of names; all null where the ray meets nothing), hidden
+// (objects), objects (tree, rows, matches, searching: what the panel shows), screenshot (file),
+// message (text, is_error), camera (json: copied), path (file, frames), closed (frames).
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -79,7 +79,8 @@ Ui::Ui(GlfwWindow& window) {
     const double pixelsPerUnit =
         size.x > 0 ? static_cast<double>(window.framebufferPx().x) / size.x : 1.0;
     const auto textScale = static_cast<float>(window.contentScale());
-    setStyle(textScale / static_cast<float>(pixelsPerUnit));
+    textScale_ = textScale / static_cast<float>(pixelsPerUnit);
+    setStyle(textScale_);
     loadFont(static_cast<float>(kTextPx) * textScale);
     io.FontGlobalScale = 1.0f / static_cast<float>(pixelsPerUnit);
     ImGui_ImplGlfw_InitForOpenGL(window.handle(), false);

@@ -21,6 +21,8 @@ public:
     // Is the mouse over a panel, or the keyboard in one of its fields?
     [[nodiscard]] bool wantsMouse() const;
     [[nodiscard]] bool wantsKeys() const;
+    // Pixels of text against those of an ordinary screen, in the units of panels.
+    [[nodiscard]] float textScale() const noexcept { return textScale_; }
     // Milliseconds of CPU from beginFrame() to draw lists, GL excluded; and of GL.
     [[nodiscard]] double buildMs() const noexcept { return buildMs_; }
     [[nodiscard]] double drawMs() const noexcept { return drawMs_; }
@@ -28,6 +30,7 @@ public:
 private:
     double buildMs_ = 0.0, drawMs_ = 0.0;
     double beganS_ = 0.0;
+    float textScale_ = 1.0f;
 };
 
 // A row of a table of two columns: a name, faint, and what it is.

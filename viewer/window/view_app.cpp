@@ -23,6 +23,7 @@ constexpr int kRestlessFrames = 60;
 constexpr double kRestlessSeconds = 0.25;
 constexpr double kFirstSeconds = 0.002;  // the same, before anything has come
 constexpr double kBlankSeconds = 0.3;    // an empty picture is shown when nothing comes for so long
+constexpr float kHudWidthPx = 322.0f;    // of the numbers, with their margin
 constexpr double kMaxStepSeconds = 0.1;  // a slow frame must not throw the eye through a wall
 
 constexpr glm::u8vec4 kDrawnColour{255, 105, 180, 190};  // pink
@@ -62,8 +63,12 @@ ViewApp::~ViewApp() {
 
 void ViewApp::open(const std::filesystem::path& path) {
     auto scene = std::make_unique<Scene>(path, settings_.runtime);
+    inspection_.reset();
     scene_ = std::move(scene);  // only now: what cannot be opened leaves the old one
-    pick_.reset();
+    inspection_ = std::make_unique<Inspection>(*scene_, [] { GlfwWindow::wake(); });
+    objectPanel_.emplace();
+    objectToFrame_.reset();
+    settings_.section = {};
     replay_.reset();
     readRate_.clear();
     const glm::ivec2 size = glm::max(window_.framebufferPx(), glm::ivec2(1));
@@ -85,11 +90,12 @@ void ViewApp::open(const std::filesystem::path& path) {
 
 void ViewApp::restart() {
     isRestartWanted_ = false;
-    pick_.reset();
+    inspection_->dismissPick();
     readRate_.clear();
     try {
         scene_->restart(settings_.runtime);
     } catch (const Error& error) {
+        inspection_.reset();
         scene_.reset();
         navigation_.reset();
         replay_.reset();
@@ -119,6 +125,7 @@ void ViewApp::step() {
     if (messages_.size() != messages) uiFrames_ = kUiFrames;
 
     if (isRestartWanted_) restart();
+    takeNews();
     advance(std::min(passed, kMaxStepSeconds));
     bool hasDrawn = false;
     guarded([&] { hasDrawn = drawScene(); });
@@ -150,6 +157,7 @@ bool ViewApp::drawScene() {
     const bool isRestless = !isSceneDirty_ && !scene_->isWaitingForPages();
     restlessFrames_ = isRestless ? restlessFrames_ + 1 : 0;
     isSceneDirty_ = false;
+    scene_->setClip(clip());
     const hlod::FrameRecord& record = scene_->draw(navigation_->camera(), settings_, isMoving());
     if (record.bytesRead > 0) restlessFrames_ = 0;
     timeline_.add(record);
@@ -165,7 +173,7 @@ bool ViewApp::drawScene() {
 }
 
 void ViewApp::drawLines() {
-    if (pick_) lines_.addBox(pick_->boxModel, kPickColour);
+    if (inspection_->pick()) lines_.addBox(inspection_->pick()->boxModel, kPickColour);
     if (scene_->frozen() != nullptr) addFrozenLines(*scene_->frozen());
     lines_.draw(hlod::View(navigation_->camera(), scene_->box()),
                 *scene_->renderer().device().target());
@@ -204,30 +212,17 @@ void ViewApp::present() {
 
 void ViewApp::showPanels() {
     if (scene_) {
-        cache::Streaming& streaming = scene_->renderer().runner().streaming();
-        if (settings_.showsHud) {
-            const Streaming numbers{
-                .inFlight = streaming.requests().sentCount(),
-                .waiting = streaming.requests().waitingCount(),
-                .bytesPerSecond = scene_->isSettled() ? 0.0 : readRate_.perSecond(),
-                .gpuBudgetBytes = settings_.runtime.gpuBytes,
-                .hostBudgetBytes = settings_.runtime.hostBytes,
-                .uiMs = ui_.buildMs()};
-            showHud(*scene_, settings_, numbers, timeline_);
-        }
-        if (pick_) showPick(*pick_, scene_->record());
-        if (settings_.showsSteering) {
-            const Change change = showSteering(settings_, scene_->record());
-            if (change.isRuntime) {
-                isRestartWanted_ = true;  // not while panels show the scene
-            }
-            isSceneDirty_ |= change.isLook || change.isRuntime;
-        }
+        showScenePanels();
+        showToolPanels();
     } else {
         showWelcome();
     }
     std::vector<std::string> states;
     if (scene_ && scene_->frozen() != nullptr) states.emplace_back("frozen");
+    if (settings_.section.isOn) states.emplace_back("cut");
+    if (inspection_ && inspection_->visibility().hiddenCount() > 0) {
+        states.push_back(fmt::format("{} objects hidden", inspection_->visibility().hiddenCount()));
+    }
     if (isRecording_) states.push_back(fmt::format("recording, {} frames", recorded_.size()));
     if (replay_) {
         states.push_back(fmt::format("replaying {}/{}", replayFrame_, replay_->frames.size()));
@@ -235,6 +230,38 @@ void ViewApp::showPanels() {
     showFooter(navigation_ ? &*navigation_ : nullptr, settings_, states);
     showMessages(messages_);
     if (settings_.showsHelp) showKeys();
+}
+
+void ViewApp::showScenePanels() {
+    if (settings_.showsHud) {
+        const cache::RequestQueue& requests = scene_->renderer().runner().streaming().requests();
+        const Streaming numbers{.inFlight = requests.sentCount(),
+                                .waiting = requests.waitingCount(),
+                                .bytesPerSecond = scene_->isSettled() ? 0.0 : readRate_.perSecond(),
+                                .gpuBudgetBytes = settings_.runtime.gpuBytes,
+                                .hostBudgetBytes = settings_.runtime.hostBytes,
+                                .uiMs = ui_.buildMs()};
+        showHud(*scene_, settings_, numbers, timeline_);
+    }
+    if (inspection_->hasAsked()) showPick(*scene_, *inspection_);
+    if (settings_.showsSteering) take(showSteering(settings_, scene_->record()));
+}
+
+void ViewApp::showToolPanels() {
+    if (settings_.section.isOn) take(showSection(settings_.section, *scene_, *inspection_));
+    if (settings_.showsLoading) take(showLoading(*scene_, settings_.runtime.disk));
+    if (!settings_.showsObjects) return;
+    const float leftPx = settings_.showsHud ? kHudWidthPx * ui_.textScale() : 0.0f;
+    const ObjectPanel::Asked asked = objectPanel_->show(*inspection_, leftPx);
+    if (asked.frame) objectToFrame_ = asked.frame;
+}
+
+void ViewApp::take(const Change& change) {
+    isRestartWanted_ |= change.isRuntime;  // not while panels show the scene
+    if (change.isDisk && !scene_->renderer().setDisk(settings_.runtime.disk)) {
+        isRestartWanted_ = true;
+    }
+    isSceneDirty_ |= change.isLook || change.isRuntime || isRestartWanted_;
 }
 
 void ViewApp::logFrame() {
@@ -260,6 +287,8 @@ void ViewApp::logFrame() {
                          {"replaying", replay_.has_value()},
                          {"colours", kColouringNames[static_cast<size_t>(settings_.colouring)]},
                          {"wireframe", settings_.isWireframe},
+                         {"section", settings_.section.isOn},
+                         {"hidden_objects", inspection_->visibility().hiddenCount()},
                          {"frame_ms", record.frameMs},
                          {"ui_ms", ui_.buildMs()},
                          {"ui_gl_ms", ui_.drawMs()}});

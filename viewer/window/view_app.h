@@ -6,7 +6,9 @@
 #include "viewer/navigation.h"
 #include "viewer/window/glfw_window.h"
 #include "viewer/window/input_map.h"
+#include "viewer/window/inspection.h"
 #include "viewer/window/line_drawer.h"
+#include "viewer/window/object_panel.h"
 #include "viewer/window/panels.h"
 #include "viewer/window/rate_meter.h"
 #include "viewer/window/scene.h"
@@ -52,6 +54,9 @@ private:
     void addFrozenLines(const FrozenCut& frozen);
     void present();
     void showPanels();
+    void showScenePanels();
+    void showToolPanels();
+    void take(const Change& change);
     void logFrame();
     [[nodiscard]] bool isMoving() const { return isCameraMoving_; }
 
@@ -61,7 +66,6 @@ private:
     [[nodiscard]] bool runCamera(Command command);
     void nextStrategy();
     void toggleFreeze();
-    void pickAt(glm::dvec2 px);
     void saveScreenshot();
     void copyCamera();
     void pasteCamera();
@@ -71,6 +75,15 @@ private:
     void dismiss();
     void say(const std::string& text, bool isError = false);
     [[nodiscard]] std::filesystem::path freeName(const std::string& ending) const;
+
+    // view_inspection.cpp
+    void pickAt(glm::dvec2 px);
+    void takeNews();
+    void logExact();
+    [[nodiscard]] bool runObjects(Command command);
+    void frameObject();
+    [[nodiscard]] hlod::Clip clip() const;
+
     // What throws Error within `work` is shown.
     void guarded(const std::function<void()>& work);
 
@@ -81,11 +94,13 @@ private:
     Ui ui_;
     LineDrawer lines_;
     std::unique_ptr<Scene> scene_;
+    std::unique_ptr<Inspection> inspection_;  // of `scene_`
+    std::optional<ObjectPanel> objectPanel_;  // of `inspection_`
+    std::optional<uint32_t> objectToFrame_;   // once its box has been read
     std::optional<Navigation> navigation_;
     Timeline timeline_;
     RateMeter readRate_;
     std::vector<Message> messages_;
-    std::optional<Pick> pick_;
 
     std::set<int> heldKeys_;
     std::optional<glm::dvec2> pressedPx_;  // where a click may still be one

@@ -109,6 +109,7 @@ void ViewApp::run(Command command) {
         isSceneDirty_ = true;
         return;
     }
+    if (runObjects(command)) return;
     switch (command) {
         case Command::Screenshot:
             return saveScreenshot();
@@ -135,8 +136,9 @@ bool ViewApp::runCamera(Command command) {
             navigation_->frameAll();
             return true;
         case Command::FramePick:
-            if (pick_) navigation_->frame(pick_->boxModel);
-            return pick_.has_value();
+            if (!inspection_->pick()) return false;
+            navigation_->frame(inspection_->pick()->boxModel);
+            return true;
         case Command::Home:
             navigation_->goHome();
             return true;
@@ -199,6 +201,12 @@ bool ViewApp::runLook(Command command) {
         case Command::ToggleSteering:
             settings_.showsSteering = !settings_.showsSteering;
             return false;
+        case Command::ToggleLoading:
+            settings_.showsLoading = !settings_.showsLoading;
+            return false;
+        case Command::ToggleSection:
+            settings_.section.isOn = !settings_.section.isOn;
+            return true;
         default:
             return false;
     }
@@ -222,25 +230,6 @@ void ViewApp::toggleFreeze() {
         scene_->freeze();
         say("frozen: fly away and look at what was drawn (pink) and what was hidden (yellow)");
     }
-}
-
-void ViewApp::pickAt(glm::dvec2 px) {
-    const std::optional<Pick> last = pick_;
-    pick_ = scene_->pick(px);
-    isSceneDirty_ |= last || pick_;  // the node's box
-    if (last && pick_) {
-        pick_->fromLastModelUnits = glm::distance(last->pointModel, pick_->pointModel);
-    }
-    if (!pick_) return log_.write("pick", {{"node", nullptr}});
-    const Vec3d& p = pick_->pointModel;
-    log_.write("pick", {{"node", fmt::format("0x{:x}", pick_->node.id.value)},
-                        {"level", pick_->node.id.depth()},
-                        {"triangles", pick_->node.triangleCount},
-                        {"triangle", pick_->triangle},
-                        {"error", pick_->node.errorModelUnits},
-                        {"sse", pick_->ssePx},
-                        {"page_bytes", pick_->node.pageBytes},
-                        {"point", {p.x, p.y, p.z}}});
 }
 
 std::filesystem::path ViewApp::freeName(const std::string& ending) const {
@@ -328,8 +317,8 @@ void ViewApp::dismiss() {
         settings_.showsHelp = false;
     } else if (!messages_.empty()) {
         messages_.clear();
-    } else if (pick_) {
-        pick_.reset();
+    } else if (inspection_ && inspection_->hasAsked()) {
+        inspection_->dismissPick();
         isSceneDirty_ = true;
     } else {
         replay_.reset();

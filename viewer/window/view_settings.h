@@ -3,6 +3,7 @@
 
 #include "hlod/strategies/strategies.h"
 #include "viewer/renderer.h"
+#include "viewer/section.h"
 
 #include <array>
 #include <string>
@@ -25,7 +26,10 @@ struct ViewSettings {
     bool isWireframe = false;
     bool showsDrawnBoxes = true, showsHiddenBoxes = true;  // while frozen
 
+    Section section;
+
     bool showsHud = true, showsSteering = false, showsHelp = false;
+    bool showsObjects = false, showsLoading = false;
 };
 
 }  // namespace pagoda::viewer

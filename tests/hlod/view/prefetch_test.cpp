@@ -228,8 +228,8 @@ TEST(Prefetch, StopsForAReasonThatForetoldInVainAndGoesOnWhenItIsRightAgain) {
         }
         const double size = glm::length(box.max - box.min);
         const Vec3d eye = box.max + Vec3d(size, 0.001 * size * double(index), size);
-        prefetcher.run(lookingAlong(eye, (box.min + box.max) * 0.5 - eye), box, 1.0, rig.tree,
-                       rig.streaming.residency());
+        const View view(lookingAlong(eye, (box.min + box.max) * 0.5 - eye), box);
+        prefetcher.run(view, box, 1.0, rig.tree, rig.streaming.residency());
     };
     uint64_t index = 1;
     for (; index <= 80; ++index) frame(index, false);
