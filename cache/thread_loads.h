@@ -1,9 +1,9 @@
 // thread_loads.h: a small pool of threads that read (pread) and decode. Reads begin in the order
 // they were sent; items arrive as they are decoded, but who sleeps in waitForArrival() while reads
-// are queued is woken for several at once: waking for each page was two thirds of the CPU time that
-// this costs above plain preads (docs/decisions.md). When a joined read fails, each of its items is
-// read alone, so that a fault costs only what it covers. Each thread keeps a buffer as long as the
-// longest read it has done.
+// are queued is woken for several at once: waking for each page was three quarters of the CPU time
+// that this costs above plain preads (docs/decisions.md). When a joined read fails, each of its
+// items is read alone, so that a fault costs only what it covers. Each thread keeps a buffer as
+// long as the longest read it has done.
 #pragma once
 
 #include "cache/load_queue.h"
