@@ -1,6 +1,10 @@
 #include "viewer/gl_names.h"
 
+#include "ooc/base/error.h"
+
 #include <epoxy/gl.h>
+
+#include <string>
 
 namespace pagoda::viewer {
 
@@ -30,6 +34,21 @@ GlTexture makeTexture2d(uint32_t internalFormat, int widthPx, int heightPx) {
     GlId id = 0;
     glCreateTextures(GL_TEXTURE_2D, 1, &id);
     glTextureStorage2D(id, 1, internalFormat, widthPx, heightPx);
+    return GlTexture(id);
+}
+
+GlTexture makeBufferTexture(uint32_t internalFormat, GlId buffer, uint64_t texels) {
+    GLint limit = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &limit);
+    if (texels > static_cast<uint64_t>(limit)) {
+        throw Error("", "",
+                    "this driver reads buffer textures of " + std::to_string(limit) +
+                        " texels, and pages need " + std::to_string(texels),
+                    "please report the driver");
+    }
+    GlId id = 0;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &id);
+    glTextureBuffer(id, internalFormat, buffer);
     return GlTexture(id);
 }
 

@@ -49,6 +49,9 @@ using GlProgram = GlName<deleteProgram>;
 
 [[nodiscard]] GlBuffer makeBuffer();
 [[nodiscard]] GlTexture makeTexture2d(uint32_t internalFormat, int widthPx, int heightPx);
+// All of `buffer`, of `texels` texels, for texelFetch(). Throws Error when that is more than the
+// driver reads (GL promises 65,536; drivers of GL 4.5 read 2^27 and more).
+[[nodiscard]] GlTexture makeBufferTexture(uint32_t internalFormat, GlId buffer, uint64_t texels);
 [[nodiscard]] GlFramebuffer makeFramebuffer();
 [[nodiscard]] GlVertexArray makeVertexArray();
 

@@ -162,9 +162,10 @@ std::optional<MeshStore::Place> MeshStore::allocate(uint64_t sizeBytes) {
     GlBuffer buffer = makeBuffer();
     glNamedBufferStorage(buffer.id(), static_cast<GLsizeiptr>(arena.capacityBytes()), nullptr,
                          GL_DYNAMIC_STORAGE_BIT);
+    GlTexture words = makeBufferTexture(GL_RG16I, buffer.id(), arena.capacityBytes() / 4);
     throwOnGlError("pages");
     chunkBytes_ += arena.capacityBytes();
-    chunks_.push_back({std::move(arena), std::move(buffer)});
+    chunks_.push_back({std::move(arena), std::move(buffer), std::move(words)});
     return Place{chunks_.size() - 1, *chunks_.back().arena.allocate(sizeBytes)};
 }
 

@@ -67,6 +67,8 @@ public:
     [[nodiscard]] bool contains(cache::PageId id) const { return pages_.contains(id); }
     [[nodiscard]] uint64_t usedBytes() const;  // of all pages; never above budget
     [[nodiscard]] GlId buffer(size_t chunk) const { return chunks_[chunk].buffer.id(); }
+    // The chunk's 32-bit words as a buffer texture of two signed 16-bit numbers each (RG16I).
+    [[nodiscard]] GlId words(size_t chunk) const { return chunks_[chunk].words.id(); }
 
 private:
     struct Entry {
@@ -76,6 +78,7 @@ private:
     struct Chunk {
         cache::Arena arena;
         GlBuffer buffer;
+        GlTexture words;
     };
     struct Place {
         size_t chunk;

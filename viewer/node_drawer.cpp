@@ -144,7 +144,7 @@ void NodeDrawer::submit(GlId indexBuffer) {
         const GlId chunk = store_.buffer(chunks_[begin]);
         glVertexArrayVertexBuffer(array_.id(), 0, chunk, 0, sizeof(GpuVertex));
         glVertexArrayElementBuffer(array_.id(), indexBuffer != 0 ? indexBuffer : chunk);
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kNormalsBinding, chunk);
+        glBindTextureUnit(kNormalsUnit, store_.words(chunks_[begin]));
         glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_SHORT,
                                     reinterpret_cast<const void*>(begin * sizeof(Command)),
                                     static_cast<GLsizei>(end - begin), sizeof(Command));

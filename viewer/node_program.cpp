@@ -80,15 +80,15 @@ layout(location = 0) out vec4 colour;  // linear: the framebuffer encodes sRGB
 layout(location = 1) out uint nodeOrdinal;
 layout(location = 2) out uint triangle;
 
-layout(std430, binding = 0) readonly buffer Chunk { uint words[]; };
+layout(binding = 0) uniform isamplerBuffer normals;  // octahedral, times 32767
 
-vec3 flatNormal() {
+vec3 flatNormal() {  // of any length
     // Translucent triangles are drawn in sorted order: theirs come from what the screen shows.
     if (ids.z == 0xFFFFFFFFu) return cross(dFdx(fromEye), dFdy(fromEye));
-    vec2 square = unpackSnorm2x16(words[ids.z + uint(gl_PrimitiveID)]);
-    vec3 n = vec3(square, 1.0 - abs(square.x) - abs(square.y));
+    vec2 square = vec2(texelFetch(normals, int(ids.z) + gl_PrimitiveID).xy);
+    vec3 n = vec3(square, 32767.0 - abs(square.x) - abs(square.y));
     vec2 signs = vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
-    if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * signs;
+    if (n.z < 0.0) n.xy = (32767.0 - abs(n.yx)) * signs;
     return n;
 }
 
@@ -97,8 +97,8 @@ void main() {
     vec3 n = normal;
     // A triangle with a corner that has no normal is flat as a whole: interpolation shortens the rest.
     if (dot(n, n) < 0.25) n = flatNormal();
-    float size = length(n);
-    n = size > 0.0 ? n / size : towardsEye;
+    float square = dot(n, n);
+    n = square > 0.0 ? n * inversesqrt(square) : towardsEye;
     if (dot(n, towardsEye) < 0.0) n = -n;
     float lamp = max(dot(n, normalize(towardsEye + towardsLight)), 0.0);
     float sky = 0.5 + 0.5 * dot(n, worldUp);

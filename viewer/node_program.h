@@ -28,8 +28,9 @@ struct DrawInstance {
 };
 static_assert(sizeof(DrawInstance) == 28);
 
-// Where the shader finds the normals: the chunk's buffer, as 32-bit words.
-inline constexpr uint32_t kNormalsBinding = 0;
+// The texture unit of the normals: MeshStore::words() of the chunk. (As a storage buffer llvmpipe
+// reads them pixel by pixel.)
+inline constexpr uint32_t kNormalsUnit = 0;
 
 class NodeProgram {
 public:
