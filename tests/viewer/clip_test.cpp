@@ -106,7 +106,7 @@ TEST_P(HiddenObjects, AreInNoPixelOfACoarsePicture) {
     const auto strategy = hlod::makeStrategy(GetParam());
     hlod::Clip clip;
     clip.hidden = setOf({1});
-    const Result shown = render(renderer, alongTheRow(-30.0), *strategy, 3.0, clip);
+    const Result shown = render(renderer, alongTheRow(-30.0), *strategy, 30.0, clip);
     size_t covered = 0;
     bool isCoarse = false;
     for (size_t i = 0; i < shown.picture.pixelCount(); ++i) {

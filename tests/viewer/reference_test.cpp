@@ -29,8 +29,10 @@ protected:
         if (!std::filesystem::exists(model_)) {
             GTEST_SKIP() << "no model " << model_ << ": set PAGODA_TEST_DATA";
         }
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("pagoda_reference_" + model_.stem().string() + GetParam().view);
+        // Tests of one model run side by side.
+        std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+        std::replace(test.begin(), test.end(), '/', '_');
+        folder_ = std::filesystem::temp_directory_path() / ("pagoda_reference_" + test);
         std::filesystem::create_directories(folder_);
     }
     void TearDown() override {
