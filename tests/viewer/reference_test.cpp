@@ -6,6 +6,7 @@
 #include "tests/viewer/gl_fixture.h"
 #include "viewer/renderer.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace pagoda::viewer {
