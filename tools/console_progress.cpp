@@ -47,22 +47,28 @@ std::string formatDuration(double seconds) {
     return fmt::format("{} h {} min", whole / 3600, whole / 60 % 60);
 }
 
-std::string progressLine(std::string_view stage, uint64_t doneUnits, uint64_t totalUnits,
-                         std::string_view unit, double seconds) {
+std::string progressDetail(uint64_t doneUnits, uint64_t totalUnits, std::string_view unit,
+                           double seconds) {
     const auto done = static_cast<double>(doneUnits);
     const std::string rate = formatRate(done, unit, seconds);
-    if (totalUnits == 0) return fmt::format("{} {}{}", stage, formatUnits(done, unit), rate);
-
+    if (totalUnits == 0) return formatUnits(done, unit) + rate;
     const auto total = static_cast<double>(totalUnits);
-    const double part = std::clamp(done / total, 0.0, 1.0);
-    const int filled = static_cast<int>(part * kBarWidth);
-    std::string line = fmt::format("{} {:3.0f}% [{:#<{}}{:{}}] {} of {}{}", stage,
-                                   std::floor(part * 100.0), "", filled, "", kBarWidth - filled,
-                                   formatUnits(done, unit), formatUnits(total, unit), rate);
+    std::string text = formatUnits(done, unit) + " of " + formatUnits(total, unit) + rate;
     if (doneUnits > 0 && doneUnits < totalUnits && seconds > 0) {
-        line += fmt::format(", {} left", formatDuration(seconds * (total - done) / done));
+        text += fmt::format(", {} left", formatDuration(seconds * (total - done) / done));
     }
-    return line;
+    return text;
+}
+
+std::string progressLine(std::string_view stage, uint64_t doneUnits, uint64_t totalUnits,
+                         std::string_view unit, double seconds) {
+    const std::string detail = progressDetail(doneUnits, totalUnits, unit, seconds);
+    if (totalUnits == 0) return fmt::format("{} {}", stage, detail);
+    const double part =
+        std::clamp(static_cast<double>(doneUnits) / static_cast<double>(totalUnits), 0.0, 1.0);
+    const int filled = static_cast<int>(part * kBarWidth);
+    return fmt::format("{} {:3.0f}% [{:#<{}}{:{}}] {}", stage, std::floor(part * 100.0), "", filled,
+                       "", kBarWidth - filled, detail);
 }
 
 ConsoleProgress::ConsoleProgress(std::ostream& out, ProgressStyle style,

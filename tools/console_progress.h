@@ -63,6 +63,9 @@ private:
 // `seconds` since the stage began; without `totalUnits` there is no bar, only what is done.
 [[nodiscard]] std::string progressLine(std::string_view stage, uint64_t doneUnits,
                                        uint64_t totalUnits, std::string_view unit, double seconds);
+// "12.3 MB of 27.1 MB, 4.1 MB/s, 4 s left": its numbers alone.
+[[nodiscard]] std::string progressDetail(uint64_t doneUnits, uint64_t totalUnits,
+                                         std::string_view unit, double seconds);
 // 75.2 -> "1 min 15 s"; 3.14 -> "3.1 s".
 [[nodiscard]] std::string formatDuration(double seconds);
 

@@ -41,6 +41,8 @@ public:
     [[nodiscard]] NavigationMode mode() const { return mode_; }
     // Distances, speeds and frameAll() go by it. May be empty or a point.
     void setScene(const Box3d& sceneModel);
+    // Where goHome() leads from now on; must be a camera.
+    void setHome(const hlod::Camera& home) { home_ = home; }
     // The camera stays; it levels with the next turn or frame().
     void setWorldUp(const Vec3d& worldUp);
 

@@ -1,6 +1,7 @@
 #include "viewer/node_program.h"
 
 #include "ooc/base/error.h"
+#include "viewer/lighting_glsl.h"
 
 #include <epoxy/gl.h>
 
@@ -64,13 +65,7 @@ void main() {
 }
 )";
 
-// The light is part of the camera (a headlight, a little above and to the left, so that faces which
-// meet at an edge differ) plus a sky that is brighter than the ground. Contrast is moderate on
-// purpose: a coarse node shaded flat must look like the fine one that it stands for.
-constexpr const char* kFragmentShader = R"(#version 450 core
-layout(location = 5) uniform vec3 towardsLight;  // added to the direction to the eye
-layout(location = 6) uniform vec3 worldUp;
-
+constexpr const char* kFragmentShader = R"(
 layout(location = 0) in vec3 fromEye;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 albedo;
@@ -97,13 +92,7 @@ void main() {
     vec3 n = normal;
     // A triangle with a corner that has no normal is flat as a whole: interpolation shortens the rest.
     if (dot(n, n) < 0.25) n = flatNormal();
-    float square = dot(n, n);
-    n = square > 0.0 ? n * inversesqrt(square) : towardsEye;
-    if (dot(n, towardsEye) < 0.0) n = -n;
-    float lamp = max(dot(n, normalize(towardsEye + towardsLight)), 0.0);
-    float sky = 0.5 + 0.5 * dot(n, worldUp);
-    float light = 0.14 + 0.26 * sky + 0.54 * lamp;
-    colour = vec4(albedo.rgb * light, albedo.a);
+    colour = vec4(albedo.rgb * lightOn(n, towardsEye), albedo.a);
     nodeOrdinal = ids.x;
     triangle = ids.y + uint(gl_PrimitiveID);
 }
@@ -176,7 +165,10 @@ GlProgram linkComputeProgram(const char* source) {
 }
 
 NodeProgram::NodeProgram(std::span<const char* const> captured, bool hasSection)
-    : program_(linkProgram(vertexSource(hasSection).c_str(), kFragmentShader, captured)),
+    : program_(linkProgram(
+          vertexSource(hasSection).c_str(),
+          (std::string("#version 450 core\n") + kLightingGlsl + kFragmentShader).c_str(),
+          captured)),
       hasSection_(hasSection) {
 }
 
@@ -187,7 +179,7 @@ void NodeProgram::setView(const LatticeView& view, const Vec3f& worldUp) {
     setVec3(program, kRowY, view.rowY);
     setVec3(program, kRowW, view.rowW);
     glProgramUniform1f(program, kNearSteps, view.nearSteps);
-    setVec3(program, kTowardsLight, 0.35f * view.up - 0.25f * view.right);
+    setVec3(program, kTowardsLight, towardsLightOf(view.up, view.right));
     setVec3(program, kWorldUp, worldUp);
     if (!hasSection_) return;
     const Vec3f& normal = view.sectionNormal;

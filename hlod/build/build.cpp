@@ -251,13 +251,14 @@ BuildReport buildDatabase(const BuildOptions& options, Progress& progress) {
                                            .maxTriangles = options.maxTriangles};
     InputSet inputs(options.inputs, readerOptions, options.upAxis);
     report.inputBytes = inputs.totalBytes();
-    const Survey survey = surveyInputs(inputs, progress);
+    const Survey survey = surveyInputs(inputs, options.watcher, progress);
     clock.mark("survey");
     if (survey.bounds.isEmpty()) refuseEmpty(inputName(options), survey.dropped, survey.ignored);
     ooc::Lattice lattice;
     Intake intake = takeInAtFineEnoughStep(options, inputs, survey, lattice, progress);
     clock.mark("read and snap");
     if (intake.accepted == 0) refuseEmpty(inputName(options), intake.dropped, intake.ignored);
+    report.companions = inputs.companions();
     report.trianglesIn = intake.trianglesIn;
     report.triangles = intake.accepted;
     report.dropped = intake.dropped;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "hlod/build/inputs.h"
+#include "hlod/build/survey.h"
 #include "ooc/base/progress.h"
 #include "ooc/codecs/page_codec.h"
 
@@ -29,7 +30,8 @@ struct BuildOptions {
     uint32_t nodeTriangles = 4096;  // N: the most a node holds
     uint64_t maxTriangles = uint64_t{1} << 33;
     ooc::UpAxis upAxis =
-        ooc::UpAxis::Unknown;  // of the database; Unknown: the first input's, else z
+        ooc::UpAxis::Unknown;          // of the database; Unknown: the first input's, else z
+    SurveyWatcher* watcher = nullptr;  // sees the first reading; outlives the build
 };
 
 inline constexpr uint64_t kMinMemoryBytes = uint64_t{256} << 20;
@@ -57,6 +59,8 @@ struct BuildReport {
     uint64_t inputBytes = 0, fileBytes = 0, pageBytes = 0, scratchPeakBytes = 0,
              privatePeakBytes = 0;
     double latticeStep = 0;
+    // Other files than the inputs that the result depends on: CompanionReader::companions().
+    std::vector<std::filesystem::path> companions;
 };
 
 // Throws Error; nothing exists under `target` then.

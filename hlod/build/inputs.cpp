@@ -1,6 +1,7 @@
 #include "hlod/build/inputs.h"
 
 #include "ooc/base/error.h"
+#include "ooc/readers/reader_extras.h"
 
 #include <glob.h>
 
@@ -320,6 +321,28 @@ void InputSet::read(ooc::TriangleSink& sink) {
         sources_[i].trianglesIn = placing.triangles;
         sources_[i].attribution = entries_[i].reader->attribution();
     }
+}
+
+bool InputSet::sample(ooc::TriangleSink& sink, uint64_t triangles,
+                      const std::function<bool()>& isEnough) {
+    if (entries_.size() != 1) return false;
+    const Entry& entry = entries_.front();
+    PlacingSink placing(sink, entry.placement, entry.isPlaced, 0, 0, ooc::ObjectInfo::kNoParent);
+    auto* const sampled = dynamic_cast<ooc::SampledReader*>(entry.reader.get());
+    return sampled != nullptr && sampled->sample(placing, triangles, isEnough);
+}
+
+std::vector<std::filesystem::path> InputSet::companions() const {
+    std::vector<std::filesystem::path> all;
+    for (const Entry& entry : entries_) {
+        const auto* const reader = dynamic_cast<const ooc::CompanionReader*>(entry.reader.get());
+        if (reader == nullptr) continue;
+        const std::vector<std::filesystem::path> some = reader->companions();
+        all.insert(all.end(), some.begin(), some.end());
+    }
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
 }
 
 uint32_t InputSet::sourceOfObject(uint32_t object) const {

@@ -4,6 +4,7 @@
 #include "ooc/readers/reader.h"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -35,6 +36,11 @@ public:
 
     // The same calls in the same order every time. Progress in bytes of the files.
     void read(ooc::TriangleSink& sink);
+    // SampledReader::sample(), placed; of a single input alone.
+    [[nodiscard]] bool sample(ooc::TriangleSink& sink, uint64_t triangles,
+                              const std::function<bool()>& isEnough);
+    // Of all readers, after read(): CompanionReader::companions().
+    [[nodiscard]] std::vector<std::filesystem::path> companions() const;
 
     [[nodiscard]] uint64_t totalBytes() const noexcept { return totalBytes_; }
     [[nodiscard]] ooc::UpAxis databaseUp() const noexcept { return databaseUp_; }

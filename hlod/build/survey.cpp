@@ -22,11 +22,19 @@ bool isFinite(const Vec3d& p) {
 
 class SurveySink : public ooc::TriangleSink {
 public:
-    SurveySink(Survey& survey, Progress& progress) : survey_(survey), progress_(progress) {}
+    SurveySink(Survey& survey, SurveyWatcher* watcher, Progress& progress)
+        : survey_(survey), watcher_(watcher), progress_(progress) {}
 
-    uint32_t addObject(const ooc::ObjectInfo&) override { return objects_++; }
-    uint32_t addMaterial(const ooc::MaterialInfo&) override { return materials_++; }
+    uint32_t addObject(const ooc::ObjectInfo& object) override {
+        if (watcher_ != nullptr) (void)watcher_->addObject(object);  // it counts as we do
+        return objects_++;
+    }
+    uint32_t addMaterial(const ooc::MaterialInfo& material) override {
+        if (watcher_ != nullptr) (void)watcher_->addMaterial(material);
+        return materials_++;
+    }
     void addTriangles(const ooc::TriangleBatch& batch) override {
+        if (watcher_ != nullptr) watcher_->addTriangles(batch);
         for (size_t corner = 0; corner < batch.positions.size(); corner += 3) {
             addTriangle(batch.positions[corner], batch.positions[corner + 1],
                         batch.positions[corner + 2]);
@@ -42,6 +50,7 @@ public:
         survey_.ignored[std::string(what)] += count;
     }
     void advance(uint64_t bytes) override {
+        if (watcher_ != nullptr) watcher_->advance(bytes);
         progress_.advance(bytes);
         progress_.check();
     }
@@ -64,6 +73,7 @@ private:
     }
 
     Survey& survey_;
+    SurveyWatcher* watcher_;
     Progress& progress_;
     uint32_t objects_ = 0, materials_ = 0;
 };
@@ -84,11 +94,13 @@ int finestDetailExponent(const Survey& survey) {
 
 }  // namespace
 
-Survey surveyInputs(InputSet& inputs, Progress& progress) {
+Survey surveyInputs(InputSet& inputs, SurveyWatcher* watcher, Progress& progress) {
     Survey survey;
-    SurveySink sink(survey, progress);
+    SurveySink sink(survey, watcher, progress);
+    if (watcher != nullptr) watcher->beginSurvey(inputs.databaseUp());
     progress.beginStage("survey", inputs.totalBytes(), "B");
     inputs.read(sink);
+    if (watcher != nullptr) watcher->endSurvey();
     return survey;
 }
 

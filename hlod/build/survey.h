@@ -12,6 +12,16 @@
 
 namespace pagoda::hlod {
 
+// Sees the first reading as it goes, for who wants to show what has been read so far. Called on the
+// thread that builds.
+class SurveyWatcher : public ooc::TriangleSink {
+public:
+    // Before all else: the axis that is up in what comes.
+    virtual void beginSurvey(ooc::UpAxis databaseUp) = 0;
+    // Everything has been read.
+    virtual void endSurvey() = 0;
+};
+
 // What one reading of all inputs showed, before anything is snapped.
 struct Survey {
     Box3d bounds;  // of finite triangles' corners
@@ -24,7 +34,8 @@ struct Survey {
     std::array<uint64_t, 2200> longestEdgeExponents{};
 };
 
-[[nodiscard]] Survey surveyInputs(InputSet& inputs, Progress& progress);
+// `watcher`, if any, is told all that is read.
+[[nodiscard]] Survey surveyInputs(InputSet& inputs, SurveyWatcher* watcher, Progress& progress);
 
 // The step: `precision` when given, else the coarser of extent / 2^18 and the finest detail / 16,
 // where the finest detail is the longest edge that all but 0.1% of the triangles reach; never finer

@@ -1,44 +1,18 @@
 #include "ooc/readers/gltf_buffers.h"
 
 #include "ooc/base/error.h"
+#include "ooc/readers/gltf_files.h"
 
 #include <meshoptimizer.h>
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 
 namespace pagoda::ooc::gltf {
 namespace {
 
 constexpr std::string_view kCutShort = "check that all files of the model were copied whole";
-
-int hexValue(char c) {
-    if (c >= '0' && c <= '9') return c - '0';
-    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-    return -1;
-}
-
-std::string percentDecoded(const std::string& uri) {
-    std::string decoded;
-    for (size_t i = 0; i < uri.size(); ++i) {
-        const int high = i + 2 < uri.size() && uri[i] == '%' ? hexValue(uri[i + 1]) : -1;
-        const int low = high >= 0 ? hexValue(uri[i + 2]) : -1;
-        if (low < 0) {
-            decoded += uri[i];
-            continue;
-        }
-        decoded += static_cast<char>(high * 16 + low);
-        i += 2;
-    }
-    return decoded;
-}
-
-// "scheme:" by RFC 3986; one letter is no scheme (a drive).
-bool hasScheme(const std::string& uri) {
-    const size_t colon = uri.find(':');
-    return colon != std::string::npos && colon > 1 && uri.find('/') > colon;
-}
 
 // Whether meshopt can be called at all: it asserts what we have to check.
 const char* meshoptProblem(const MeshoptView& view) {
@@ -170,22 +144,20 @@ std::vector<std::byte> Buffers::loadUri(const std::string& uri, uint64_t expecte
 std::vector<std::byte> Buffers::loadFile(const std::string& uri, uint64_t expectedBytes,
                                          const std::string& where) {
     const std::string name = percentDecoded(uri);
-    const std::filesystem::path relative(name);
-    if (hasScheme(uri) || relative.is_absolute() || name.find('\0') != std::string::npos) {
+    const std::optional<std::filesystem::path> path = pathBeside(source_, uri);
+    if (!path) {
         source_.fail(where + ".uri", "\"" + uri + "\" is not the name of a file beside the model",
                      "download it and name it by a relative path");
     }
-    const std::filesystem::path path =
-        std::filesystem::path(source_.path()).parent_path() / relative;
     std::error_code problem;
     // Before it is opened: opening a FIFO would wait for ever.
-    if (!std::filesystem::is_regular_file(path, problem)) {
+    if (!std::filesystem::is_regular_file(*path, problem)) {
         source_.fail(where, "its file \"" + name + "\" is missing or not a regular file",
                      std::string(kCutShort));
     }
-    const File file = File::openForReading(path);
+    const File file = File::openForReading(*path);
     const uint64_t stamp = file.changeStamp();
-    if (stamps_.try_emplace(path, stamp).first->second != stamp) {
+    if (stamps_.try_emplace(*path, stamp).first->second != stamp) {
         source_.fail(where, "its file \"" + name + "\" has changed since the first reading",
                      "start again");
     }

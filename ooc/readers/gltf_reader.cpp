@@ -3,9 +3,11 @@
 #include "ooc/readers/gltf_buffers.h"
 #include "ooc/readers/gltf_document.h"
 #include "ooc/readers/gltf_emitter.h"
+#include "ooc/readers/gltf_files.h"
 #include "ooc/readers/gltf_material.h"
 #include "ooc/readers/gltf_primitive.h"
 #include "ooc/readers/gltf_scene.h"
+#include "ooc/readers/reader_extras.h"
 #include "ooc/readers/source_file.h"
 
 #include <algorithm>
@@ -24,7 +26,7 @@ using namespace gltf;
 // of file can ask for billions.
 constexpr uint64_t kMaxInstanceObjects = uint64_t{1} << 22;
 
-class GltfReader final : public Reader {
+class GltfReader final : public Reader, public CompanionReader {
 public:
     GltfReader(const std::filesystem::path& path, const ReaderOptions& options);
 
@@ -34,6 +36,9 @@ public:
         return document_.model.asset.copyright;
     }
     [[nodiscard]] uint64_t announcedTriangles() const override { return scene_.triangles; }
+    [[nodiscard]] std::vector<std::filesystem::path> companions() const override {
+        return filesBeside(source_, document_);
+    }
 
 private:
     SourceFile source_;

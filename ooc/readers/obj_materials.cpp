@@ -54,6 +54,7 @@ void ObjMaterials::finish(const std::string& name, const Material& material, dou
 }
 
 bool ObjMaterials::addLibrary(const std::filesystem::path& path) {
+    lookedAt_.insert(path);
     std::error_code code;
     if (!std::filesystem::is_regular_file(path, code)) return false;
     const SourceFile source(path);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,10 @@ public:
 
     // Null: no library defines it.
     [[nodiscard]] const Material* find(std::string_view name) const;
+    // Every path that addLibraries() looked at.
+    [[nodiscard]] const std::set<std::filesystem::path>& lookedAt() const noexcept {
+        return lookedAt_;
+    }
     [[nodiscard]] uint64_t missingLibraries() const noexcept { return missing_; }
     // Materials that say they are wholly transparent: taken as opaque, as nothing would be seen
     // (exporters disagree on which end of Tr and d is which).
@@ -36,6 +41,7 @@ private:
     void finish(const std::string& name, const Material& material, double dissolve);
 
     std::map<std::string, Material, std::less<>> materials_;
+    std::set<std::filesystem::path> lookedAt_;
     uint64_t missing_ = 0, invisible_ = 0;
 };
 

@@ -4,15 +4,17 @@
 #include "ooc/readers/obj_lines.h"
 #include "ooc/readers/obj_materials.h"
 #include "ooc/readers/obj_vertices.h"
+#include "ooc/readers/reader_extras.h"
 #include "ooc/readers/source_file.h"
 
 #include <array>
 #include <optional>
+#include <vector>
 
 namespace pagoda::ooc {
 namespace {
 
-class ObjReader final : public Reader {
+class ObjReader final : public Reader, public CompanionReader {
 public:
     ObjReader(const std::filesystem::path& path, const ReaderOptions& options)
         : source_(SourceFile::openText(path, options.scratchFolder)),
@@ -27,6 +29,10 @@ public:
         readFaces(sink, meter);
         source_.checkUnchanged();
         sayWhatIsIgnored(sink);
+    }
+
+    [[nodiscard]] std::vector<std::filesystem::path> companions() const override {
+        return {materials_.lookedAt().begin(), materials_.lookedAt().end()};
     }
 
 private:

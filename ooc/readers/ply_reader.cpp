@@ -2,8 +2,10 @@
 
 #include "ooc/readers/ply_faces.h"
 #include "ooc/readers/ply_header.h"
+#include "ooc/readers/ply_sampler.h"
 #include "ooc/readers/ply_values.h"
 #include "ooc/readers/ply_vertices.h"
+#include "ooc/readers/reader_extras.h"
 
 #include <numeric>
 #include <optional>
@@ -12,7 +14,7 @@
 namespace pagoda::ooc {
 namespace {
 
-class PlyReader final : public Reader {
+class PlyReader final : public Reader, public SampledReader {
 public:
     PlyReader(const std::filesystem::path& path, const ReaderOptions& options)
         : source_(path), header_(readPlyHeader(source_)), scratchFolder_(options.scratchFolder) {
@@ -21,6 +23,12 @@ public:
     }
 
     void read(TriangleSink& sink) override;
+    [[nodiscard]] bool sample(TriangleSink& sink, uint64_t triangles,
+                              const std::function<bool()>& isEnough) override {
+        const auto layout = findPlySampleLayout(source_, header_);
+        if (layout) samplePly(source_, header_, *layout, sink, triangles, isEnough);
+        return layout.has_value();
+    }
 
 private:
     // Where an element's data begins; known once all before it has been walked.

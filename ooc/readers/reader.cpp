@@ -6,6 +6,7 @@
 #include "ooc/readers/obj_reader.h"
 #include "ooc/readers/off_reader.h"
 #include "ooc/readers/ply_reader.h"
+#include "ooc/readers/reader_extras.h"
 #include "ooc/readers/stl_reader.h"
 
 #include <algorithm>
@@ -119,12 +120,11 @@ const std::vector<ReaderFormat>& readerFormats() {
     return formats;
 }
 
-std::unique_ptr<Reader> openReader(const std::filesystem::path& path,
-                                   const ReaderOptions& options) {
+const ReaderFormat& readerFormatOf(const std::filesystem::path& path) {
     const std::string extension = lowerExtension(path);
     for (const ReaderFormat& format : readerFormats()) {
         if (std::ranges::find(format.extensions, extension) != format.extensions.end()) {
-            return format.open(path, options);
+            return format;
         }
     }
     for (const ForeignFormat& foreign : kForeignFormats) {
@@ -137,6 +137,15 @@ std::unique_ptr<Reader> openReader(const std::filesystem::path& path,
                 extension.empty() ? "file without an extension: its kind is not known"
                                   : "files of kind \"" + extension + "\" are not known",
                 "name one of " + knownExtensions());
+}
+
+bool mayBeSampled(const ReaderFormat& format) {
+    return format.open == openPlyReader || format.open == openStlReader;
+}
+
+std::unique_ptr<Reader> openReader(const std::filesystem::path& path,
+                                   const ReaderOptions& options) {
+    return readerFormatOf(path).open(path, options);
 }
 
 }  // namespace pagoda::ooc

@@ -1,5 +1,8 @@
 #include "ooc/readers/stl_reader.h"
 
+#include "ooc/readers/read_ahead.h"
+#include "ooc/readers/reader_extras.h"
+#include "ooc/readers/scattered_order.h"
 #include "ooc/readers/source_file.h"
 #include "ooc/readers/text_scan.h"
 #include "ooc/readers/text_stream.h"
@@ -22,7 +25,7 @@ constexpr uint64_t kHeaderBytes = 84;  // 80 of any text, then the number of fac
 constexpr uint64_t kFacetBytes = 50;   // normal, three corners, two bytes of attribute
 
 // Facet normals are not handed on: they say no more than the corners do.
-class BinaryStlReader final : public Reader {
+class BinaryStlReader final : public Reader, public SampledReader {
 public:
     BinaryStlReader(SourceFile source, uint64_t facets, bool isCountWrong)
         : source_(std::move(source)), facets_(facets), isCountWrong_(isCountWrong) {}
@@ -37,6 +40,8 @@ public:
         }
     }
     [[nodiscard]] uint64_t announcedTriangles() const override { return facets_; }
+    [[nodiscard]] bool sample(TriangleSink& sink, uint64_t triangles,
+                              const std::function<bool()>& isEnough) override;
 
 private:
     void readFacets(TriangleSink& sink) {
@@ -78,6 +83,26 @@ private:
     uint64_t facets_;
     bool isCountWrong_;
 };
+
+bool BinaryStlReader::sample(TriangleSink& sink, uint64_t triangles,
+                             const std::function<bool()>& isEnough) {
+    if (facets_ == 0) return false;
+    TriangleBatcher batcher(sink, false, false);
+    batcher.setTarget(sink.addObject({}), sink.addMaterial({}));
+    std::vector<std::byte> block;
+    readAhead(source_.file());
+    BlockSample order(facets_, kFacetBytes);
+    BlockSample::Visit visit;
+    for (uint64_t taken = 0; taken < triangles && order.next(visit) && !isEnough();) {
+        block.resize(visit.rows * kFacetBytes);
+        source_.file().readAt(kHeaderBytes + visit.firstRow * kFacetBytes, block);
+        for (uint64_t k = visit.phase; k < visit.rows; k += visit.stride, ++taken) {
+            addFacet(block.data() + k * kFacetBytes, batcher);
+        }
+    }
+    batcher.finish();
+    return true;
+}
 
 // Keywords in any case and on any line; each solid is an object.
 class TextStlReader final : public Reader {

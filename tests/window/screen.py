@@ -2,8 +2,10 @@
 for a time to pass: all waits are for a line in the log, and end only with a failure."""
 import json
 import os
+import shutil
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -132,3 +134,29 @@ class Window:
         """Waits for the end: (exit code, stderr)."""
         _, err = self.process.communicate(timeout=PATIENCE_S)
         return self.process.returncode, err
+
+
+def run_tests(test_class, usage, arguments):
+    """Runs every test_... of `test_class`(binary, folder, screen) whose name holds $ONLY; returns the
+    exit code. `arguments`: PAGODA [FOLDER]; the folder keeps what is written there."""
+    if len(arguments) not in (1, 2):
+        print(usage, file=sys.stderr)
+        return 2
+    missing = [name for name in ("Xvfb", "xdotool") if shutil.which(name) is None]
+    if missing:
+        print(f"SKIPPED: the window is not tested: no {' and no '.join(missing)}; "
+              "tools/install-packages.sh test", file=sys.stderr)
+        return 77
+    failures = 0
+    with tempfile.TemporaryDirectory() as temporary, Screen() as screen:
+        folder = arguments[1] if len(arguments) == 2 else temporary
+        test = test_class(Path(arguments[0]).resolve(), folder, screen)
+        only = os.environ.get("ONLY", "")
+        for name in [n for n in dir(test_class) if n.startswith("test_") and only in n]:
+            try:
+                getattr(test, name)()
+                print("passed", name[5:].replace("_", " "), flush=True)
+            except (AssertionError, subprocess.SubprocessError) as error:
+                failures += 1
+                print("FAILED", name[5:].replace("_", " ") + ":", error, flush=True)
+    return 1 if failures else 0

@@ -13,10 +13,9 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
-from screen import Screen, Window
+from screen import Window, run_tests
 
 WIDTH, HEIGHT = 640, 480
 
@@ -309,29 +308,5 @@ class Test:
         check(code == 1 and "broken.pagoda" in err and err.count("\n") == 1, err)
 
 
-def main(arguments):
-    if len(arguments) not in (1, 2):
-        print(__doc__, file=sys.stderr)
-        return 2
-    missing = [name for name in ("Xvfb", "xdotool") if shutil.which(name) is None]
-    if missing:
-        print(f"SKIPPED: the window is not tested: no {' and no '.join(missing)}; "
-              "tools/install-packages.sh test", file=sys.stderr)
-        return 77
-    binary = Path(arguments[0]).resolve()
-    failures = 0
-    with tempfile.TemporaryDirectory() as temporary, Screen() as screen:
-        test = Test(binary, arguments[1] if len(arguments) == 2 else temporary, screen)
-        only = os.environ.get("ONLY", "")
-        for name in [n for n in dir(Test) if n.startswith("test_") and only in n]:
-            try:
-                getattr(test, name)()
-                print("passed", name[5:].replace("_", " "), flush=True)
-            except (AssertionError, subprocess.SubprocessError) as error:
-                failures += 1
-                print("FAILED", name[5:].replace("_", " ") + ":", error, flush=True)
-    return 1 if failures else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(run_tests(Test, __doc__, sys.argv[1:]))

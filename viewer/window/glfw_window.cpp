@@ -18,7 +18,7 @@ constexpr int kMinWidthPx = 320, kMinHeightPx = 240;
     const char* text = nullptr;
     glfwGetError(&text);
     throw Error("", "", text != nullptr ? what + " (" + text + ")" : what,
-                remedy + "; without a window: pagoda render, bench, info, verify, extract");
+                remedy + "; without a window: pagoda render, build, bench, info, verify, extract");
 }
 
 }  // namespace
@@ -53,6 +53,7 @@ struct GlfwWindow::Callbacks {
         });
     }
     static void cursor(GLFWwindow* window, double x, double y) {
+        self(window).cursor_ = glm::dvec2(x, y);
         tell(window, [&](WindowEvents& events) { events.onCursor(self(window).toPx(x, y)); });
     }
     static void wheel(GLFWwindow* window, double x, double y) {
@@ -170,6 +171,7 @@ glm::dvec2 GlfwWindow::toPx(double x, double y) const {
 }
 
 glm::dvec2 GlfwWindow::cursorPx() const {
+    if (cursor_) return toPx(cursor_->x, cursor_->y);
     double x = 0.0, y = 0.0;
     glfwGetCursorPos(window_, &x, &y);
     return toPx(x, y);

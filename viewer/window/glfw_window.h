@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,7 @@ public:
     [[nodiscard]] glm::ivec2 framebufferPx() const;
     // How many framebuffer pixels a point of text is larger than on an ordinary screen.
     [[nodiscard]] double contentScale() const;
+    // As of the last event: the pointer may be elsewhere while a slow frame holds events up.
     [[nodiscard]] glm::dvec2 cursorPx() const;
     [[nodiscard]] std::string clipboard() const;
     void setClipboard(const std::string& text);
@@ -60,6 +62,7 @@ private:
 
     GLFWwindow* window_ = nullptr;
     WindowEvents* events_ = nullptr;
+    std::optional<glm::dvec2> cursor_;  // of the last event, in the window system's units
 };
 
 }  // namespace pagoda::viewer

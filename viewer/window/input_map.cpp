@@ -89,8 +89,8 @@ constexpr std::array kKeyLines = {
     KeyLine{"P", "screenshot (PNG)"},
     KeyLine{"Ctrl + C, Ctrl + V", "copy, paste the camera (JSON)"},
     KeyLine{"R, Shift + R", "record a camera path; replay it"},
-    KeyLine{"Drop a file", "opens that database"},
-    KeyLine{"Esc", "close what lies on top"},
+    KeyLine{"Drop a file", "opens that database or model"},
+    KeyLine{"Esc", "close what lies on top; cancel what is being opened"},
     KeyLine{"Ctrl + Q", "quit"},
 };
 

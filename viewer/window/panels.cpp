@@ -174,11 +174,30 @@ void showFooter(const Navigation* navigation, const ViewSettings& settings,
     ImGui::PopStyleVar();
 }
 
+bool showOpening(const std::string& name, const OpeningProgress& progress, uint64_t trianglesSeen) {
+    const float em = ImGui::GetFontSize();
+    placePanel(0.5f, 0.0f, em, 0.7f * em);
+    ImGui::SetNextWindowSize({std::min(26.0f * em, 0.9f * ImGui::GetIO().DisplaySize.x), 0.0f});
+    ImGui::Begin("opening", nullptr, kFixedPanel);
+    ImGui::TextColored(kAccent, "%s", name.c_str());
+    ImGui::SameLine();
+    ImGui::TextUnformatted(progress.stage.c_str());
+    if (progress.share >= 0.0) ImGui::ProgressBar(static_cast<float>(progress.share));
+    ImGui::TextDisabled("%s", progress.detail.c_str());
+    if (trianglesSeen > 0) {
+        ImGui::TextDisabled("shown coarsely: of %s triangles", formatCount(trianglesSeen).c_str());
+    }
+    const bool isCancelled = ImGui::Button("cancel (Esc)");
+    ImGui::End();
+    return isCancelled;
+}
+
 void showWelcome() {
     placePanel(0.5f, 0.5f, 0.0f, 0.0f);
     ImGui::Begin("welcome", nullptr, kFixedPanel);
-    ImGui::TextUnformatted("Drop a database (NAME.pagoda) here.");
-    ImGui::TextDisabled("Make one from a mesh: pagoda build MESH -o NAME.pagoda");
+    ImGui::TextUnformatted("Drop a database or a model here.");
+    ImGui::TextDisabled(
+        "NAME.pagoda opens at once; PLY, OBJ, STL, OFF, glTF, GLB, Draco is built first");
     ImGui::End();
 }
 

@@ -5,6 +5,7 @@
 
 #include "viewer/navigation.h"
 #include "viewer/window/inspection.h"
+#include "viewer/window/model_opening.h"
 #include "viewer/window/scene.h"
 #include "viewer/window/timeline.h"
 #include "viewer/window/view_settings.h"
@@ -50,7 +51,11 @@ void showMessages(const std::vector<Message>& messages);
 // One line at the bottom: how one moves, what is special, where help is.
 void showFooter(const Navigation* navigation, const ViewSettings& settings,
                 const std::vector<std::string>& states);
-// Where no database is open.
+// What is being opened, how far it is, and how many triangles the picture so far is of. True when
+// its button was pressed: it is to end.
+[[nodiscard]] bool showOpening(const std::string& name, const OpeningProgress& progress,
+                               uint64_t trianglesSeen);
+// Where nothing is open.
 void showWelcome();
 
 }  // namespace pagoda::viewer

@@ -1,9 +1,11 @@
 #include "viewer/window/scene.h"
 
 #include "viewer/window/node_colours.h"
+#include "viewer/window/seen_point.h"
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace pagoda::viewer {
 namespace {
@@ -14,28 +16,11 @@ constexpr double kGreatestMovingTauPx = 16.0;
 constexpr double kFirstTauPx = 40.0;
 constexpr uint64_t kMaxBlankFrames = 200;
 
-// Through a pixel's centre, 1 long along the direction of view.
-Vec3d directionOf(const hlod::View& view, int xPx, int yPx) {
-    const hlod::Camera& camera = view.camera();
-    const double x = 2.0 * (xPx + 0.5) / camera.widthPx - 1.0;
-    const double y = 1.0 - 2.0 * (yPx + 0.5) / camera.heightPx;
-    return view.forward() + view.right() * (x * view.tanX()) + view.up() * (y * view.tanY());
-}
-
-// The model's point that `sample` shows at the pixel's centre.
-struct SeenPoint {
-    Vec3d pointModel;
-    double distanceModelUnits;
-};
-SeenPoint pointOf(const PixelSample& sample, const hlod::View& view, int xPx, int yPx) {
-    const double along = view.nearModelUnits() / static_cast<double>(sample.reversedDepth);
-    return {view.eye() + directionOf(view, xPx, yPx) * along, along};
-}
-
 }  // namespace
 
-Scene::Scene(const std::filesystem::path& path, const RendererOptions& options)
-    : database_(ooc::Database::open(path)),
+Scene::Scene(const std::filesystem::path& path, std::string name, const RendererOptions& options)
+    : name_(std::move(name)),
+      database_(ooc::Database::open(path)),
       source_(database_),
       up_(hlod::upAxisOf(database_.metadataJson())) {
     restart(options);
@@ -53,10 +38,6 @@ void Scene::restart(const RendererOptions& options) {
     watch(std::nullopt);
     hasDrawn_ = false;
     framesSinceStart_ = 0;
-}
-
-std::string Scene::name() const {
-    return std::filesystem::path(database_.path()).stem().string();
 }
 
 std::vector<std::string> Scene::faults() const {
@@ -142,10 +123,10 @@ void Scene::thaw() {
 std::optional<Vec3d> Scene::surfaceAt(glm::dvec2 px) {
     FrameTarget* const target = renderer_->device().target();
     if (target == nullptr) return std::nullopt;
-    const int x = static_cast<int>(px.x), y = static_cast<int>(px.y);
-    const PixelSample sample = target->sample(x, y);
-    if (!(sample.reversedDepth > 0.0f)) return std::nullopt;
-    return pointOf(sample, hlod::View(camera_, box()), x, y).pointModel;
+    const auto seen = seenPoint(*target, hlod::View(camera_, box()), static_cast<int>(px.x),
+                                static_cast<int>(px.y));
+    if (!seen) return std::nullopt;
+    return seen->pointModel;
 }
 
 std::optional<Pick> Scene::pick(glm::dvec2 px) {
@@ -154,12 +135,12 @@ std::optional<Pick> Scene::pick(glm::dvec2 px) {
     const int x = static_cast<int>(px.x), y = static_cast<int>(px.y);
     const PixelSample sample = target->sample(x, y);
     const std::optional<ooc::NodeId> id = renderer_->device().nodeOf(sample.nodeOrdinal);
-    if (!id || !(sample.reversedDepth > 0.0f)) return std::nullopt;
     const hlod::View view(camera_, box());
+    const std::optional<SeenPoint> seen = seenPoint(*target, view, x, y);
+    if (!id || !seen) return std::nullopt;
     Pick pick;
-    const SeenPoint seen = pointOf(sample, view, x, y);
-    pick.pointModel = seen.pointModel;
-    pick.distanceModelUnits = seen.distanceModelUnits;
+    pick.pointModel = seen->pointModel;
+    pick.distanceModelUnits = seen->distanceModelUnits;
     pick.triangle = sample.triangle;
     const hlod::FrameCut& cut = renderer_->runner().cut();
     const auto take = [&](std::span<const hlod::Node> nodes, std::span<const uint8_t> standIns) {
@@ -182,7 +163,7 @@ std::optional<Pick> Scene::pick(glm::dvec2 px) {
 hlod::LeafRay Scene::rayThrough(glm::dvec2 px) const {
     const hlod::View view(camera_, box());
     return {.originModel = view.eye(),
-            .direction = directionOf(view, static_cast<int>(px.x), static_cast<int>(px.y)),
+            .direction = pixelDirection(view, static_cast<int>(px.x), static_cast<int>(px.y)),
             .leastAlong = view.nearModelUnits(),
             .clip = clip_};
 }
@@ -198,20 +179,9 @@ const cache::PageStory* Scene::storyOf(ooc::NodeId node) const {
 }
 
 double Scene::distanceSeen() {
-    double nearest = std::numeric_limits<double>::infinity();
     FrameTarget* const target = renderer_->device().target();
-    if (target == nullptr) return nearest;
-    const hlod::View view(camera_, box());
-    for (int row = 1; row <= 3; ++row) {
-        for (int column = 1; column <= 3; ++column) {
-            const PixelSample sample =
-                target->sample(target->widthPx() * column / 4, target->heightPx() * row / 4);
-            if (!(sample.reversedDepth > 0.0f)) continue;
-            nearest = std::min(nearest,
-                               view.nearModelUnits() / static_cast<double>(sample.reversedDepth));
-        }
-    }
-    return nearest;
+    if (target == nullptr) return std::numeric_limits<double>::infinity();
+    return nearestSeen(*target, hlod::View(camera_, box()));
 }
 
 Picture Scene::read() {

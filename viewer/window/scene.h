@@ -33,8 +33,9 @@ struct Pick {
 
 class Scene {
 public:
-    // Throws Error when there is no sound database at `path`, or its root cannot be read.
-    Scene(const std::filesystem::path& path, const RendererOptions& options);
+    // `name`: what people call the model. Throws Error when there is no sound database at `path`,
+    // or its root cannot be read.
+    Scene(const std::filesystem::path& path, std::string name, const RendererOptions& options);
     ~Scene();
     Scene(const Scene&) = delete;
     Scene& operator=(const Scene&) = delete;
@@ -82,7 +83,7 @@ public:
     [[nodiscard]] hlod::UpAxis up() const noexcept { return up_; }
     [[nodiscard]] const hlod::Camera& camera() const noexcept { return camera_; }  // last frame's
     [[nodiscard]] double clockS() const { return renderer_->runner().streaming().clock().nowS(); }
-    [[nodiscard]] std::string name() const;
+    [[nodiscard]] const std::string& name() const noexcept { return name_; }
     [[nodiscard]] uint64_t triangles() const noexcept { return triangles_; }  // of all leaves
     // Of the database as a whole and of the last frame.
     [[nodiscard]] std::vector<std::string> faults() const;
@@ -92,6 +93,7 @@ private:
     [[nodiscard]] double tauFor(const ViewSettings& settings, bool isMoving);
     void setTint(const ViewSettings& settings);
 
+    std::string name_;
     ooc::Database database_;
     cache::DatabaseSource source_;
     std::unique_ptr<Renderer> renderer_;

@@ -4,6 +4,9 @@
 //    "mode": "orbit", "strategy": "auto", "tau": 1, "effective_tau": 1, "drawn_nodes": 12,
 //    "drawn_triangles": 4000, "missing_pages": 0, "settled": true, "frozen": false,
 //    "colours": "the model's", "frame_ms": 3.1, "ui_ms": 0.2, "ui_gl_ms": 0.4}
+// While a raw model is opened: opening (file), stage (stage), preview (a frame of it: frame, width,
+// height, eye, target, triangles_seen, is_whole, discs, triangles), then made (file, database,
+// is_built; opened follows), cancelled (file) or a message.
 // Others: opened (file), resized, pick (node, point, ...), exact (the pick at full resolution:
 // point, leaf, triangle, object, path of names; all null where the ray meets nothing), hidden
 // (objects), objects (tree, rows, matches, searching: what the panel shows), screenshot (file),

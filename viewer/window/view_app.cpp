@@ -1,7 +1,6 @@
 #include "viewer/window/view_app.h"
 
 #include "ooc/base/error.h"
-#include "ooc/base/file.h"
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
@@ -10,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <utility>
 
 namespace pagoda::viewer {
 namespace {
@@ -21,7 +21,8 @@ constexpr double kLoadSeconds = 0.01;
 // A still view that nothing comes for, and that yet does not come to rest, is tried less often.
 constexpr int kRestlessFrames = 60;
 constexpr double kRestlessSeconds = 0.25;
-constexpr double kFirstSeconds = 0.002;  // the same, before anything has come
+constexpr double kFirstSeconds = 0.002;   // the same, before anything has come
+constexpr double kOpeningSeconds = 0.02;  // a new picture of what is being opened waits no longer
 constexpr double kBlankSeconds = 0.3;    // an empty picture is shown when nothing comes for so long
 constexpr float kHudWidthPx = 322.0f;    // of the numbers, with their margin
 constexpr double kMaxStepSeconds = 0.1;  // a slow frame must not throw the eye through a wall
@@ -42,50 +43,24 @@ nlohmann::json jsonOf(const Vec3d& v) {
 
 }  // namespace
 
-ViewApp::ViewApp(GlfwWindow& window, const ViewOptions& options)
+ViewApp::ViewApp(GlfwWindow& window, const ViewOptions& options, ModelOpener& opener,
+                 std::unique_ptr<Opening> opening)
     : window_(window),
       options_(options),
       settings_(options.settings),
       log_(options.stateLog),
-      ui_(window) {
+      ui_(window),
+      opener_(opener) {
     lastStepS_ = nowSeconds();
-    if (options.database.empty()) return;
-    open(options.database);
-    if (options.replay.empty()) return;
-    const std::vector<std::byte> text = readWholeFile(options.replay, hlod::kMaxPathBytes);
-    startReplay(hlod::parseCameraPath({reinterpret_cast<const char*>(text.data()), text.size()},
-                                      navigation_->camera(), options.replay.string()));
+    if (opening) {
+        beginOpening(options.model, std::move(opening));
+    } else if (!options.model.empty()) {
+        openDatabase(options.model, options.model.stem().string());
+    }
 }
 
 ViewApp::~ViewApp() {
     log_.write("closed", {{"frames", frames_}});
-}
-
-void ViewApp::open(const std::filesystem::path& path) {
-    auto scene = std::make_unique<Scene>(path, settings_.runtime);
-    inspection_.reset();
-    scene_ = std::move(scene);  // only now: what cannot be opened leaves the old one
-    inspection_ = std::make_unique<Inspection>(*scene_, [] { GlfwWindow::wake(); });
-    objectPanel_.emplace();
-    objectToFrame_.reset();
-    settings_.section = {};
-    replay_.reset();
-    readRate_.clear();
-    const glm::ivec2 size = glm::max(window_.framebufferPx(), glm::ivec2(1));
-    hlod::Camera camera;
-    camera.widthPx = size.x;
-    camera.heightPx = size.y;
-    camera = hlod::frameBox(camera, scene_->box(), hlod::viewDirection("iso", scene_->up()),
-                            scene_->up());
-    navigation_.emplace(camera, scene_->box(), hlod::upVector(scene_->up()));
-    if (!options_.cameraJson.empty()) {
-        navigation_->jumpTo(hlod::parseCamera(options_.cameraJson, camera));
-        options_.cameraJson.clear();  // of the first model alone
-    }
-    isSceneDirty_ = true;
-    openedS_ = nowSeconds();
-    window_.setTitle(scene_->name() + " - Pagoda");
-    log_.write("opened", {{"file", path.string()}});
 }
 
 void ViewApp::restart() {
@@ -108,7 +83,10 @@ double ViewApp::waitSeconds() const {
     if (size.x < 1 || size.y < 1) return kIdleSeconds;  // minimised
     if (scene_ && !scene_->hasDrawn()) return kFirstSeconds;
     if (!hasPresented_ || isSceneDirty_ || isCameraMoving_ || uiFrames_ > 0) return 0.0;
-    if (!scene_ || scene_->isSettled()) return replay_ ? 0.0 : kIdleSeconds;
+    if (!scene_ || scene_->isSettled()) {
+        if (replay_) return 0.0;
+        return opening_ ? kOpeningSeconds : kIdleSeconds;
+    }
     if (restlessFrames_ > kRestlessFrames) return kRestlessSeconds;
     return scene_->isWaitingForPages() ? kLoadSeconds : 0.0;
 }
@@ -126,6 +104,7 @@ void ViewApp::step() {
 
     if (isRestartWanted_) restart();
     takeNews();
+    followOpening();
     advance(std::min(passed, kMaxStepSeconds));
     bool hasDrawn = false;
     guarded([&] { hasDrawn = drawScene(); });
@@ -133,7 +112,7 @@ void ViewApp::step() {
     // What opens shows the model, if that comes soon.
     if (scene_ && !scene_->hasDrawn() && now < openedS_ + kBlankSeconds) return;
     present();
-    if (hasDrawn) logFrame();
+    if (hasDrawn) preview_ ? logPreview() : logFrame();
 }
 
 void ViewApp::advance(double seconds) {
@@ -141,7 +120,7 @@ void ViewApp::advance(double seconds) {
     if (replay_ && !isSceneDirty_) advanceReplay();
     navigation_->setKeys(moveKeysOf(heldKeys_));
     if (navigation_->mode() != NavigationMode::Orbit && hasPresented_) {
-        navigation_->setDistanceSeen(scene_->distanceSeen());
+        navigation_->setDistanceSeen(scene_ ? scene_->distanceSeen() : preview_->distanceSeen());
     }
     const bool wasMoving = isCameraMoving_;
     isCameraMoving_ = navigation_->update(seconds) && !replay_;
@@ -150,9 +129,13 @@ void ViewApp::advance(double seconds) {
 }
 
 bool ViewApp::drawScene() {
-    if (!scene_ || !navigation_) return false;
+    if (!hasModel() || !navigation_) return false;
     const glm::ivec2 size = window_.framebufferPx();
     if (size.x < 1 || size.y < 1) return false;  // minimised
+    if (preview_) {
+        if (isSceneDirty_) drawPreview();
+        return std::exchange(isSceneDirty_, false);
+    }
     if (!isSceneDirty_ && scene_->isSettled()) return false;
     const bool isRestless = !isSceneDirty_ && !scene_->isWaitingForPages();
     restlessFrames_ = isRestless ? restlessFrames_ + 1 : 0;
@@ -194,8 +177,7 @@ void ViewApp::addFrozenLines(const FrozenCut& frozen) {
 
 void ViewApp::present() {
     const glm::ivec2 size = window_.framebufferPx();
-    FrameTarget* const target = scene_ ? scene_->renderer().device().target() : nullptr;
-    if (target != nullptr) {
+    if (FrameTarget* const target = this->target()) {
         target->blitToWindow(size.x, size.y);
     } else {
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
@@ -214,9 +196,10 @@ void ViewApp::showPanels() {
     if (scene_) {
         showScenePanels();
         showToolPanels();
-    } else {
+    } else if (!preview_ && !opening_) {
         showWelcome();
     }
+    if (opening_) showOpeningPanel();
     std::vector<std::string> states;
     if (scene_ && scene_->frozen() != nullptr) states.emplace_back("frozen");
     if (settings_.section.isOn) states.emplace_back("cut");

@@ -8,8 +8,10 @@
 #include "viewer/window/input_map.h"
 #include "viewer/window/inspection.h"
 #include "viewer/window/line_drawer.h"
+#include "viewer/window/model_opening.h"
 #include "viewer/window/object_panel.h"
 #include "viewer/window/panels.h"
+#include "viewer/window/preview_scene.h"
 #include "viewer/window/rate_meter.h"
 #include "viewer/window/scene.h"
 #include "viewer/window/state_log.h"
@@ -26,7 +28,9 @@ namespace pagoda::viewer {
 
 class ViewApp final : public WindowEvents {
 public:
-    ViewApp(GlfwWindow& window, const ViewOptions& options);
+    // `opening`: of options.model, which is a database where there is none. `opener` outlives it.
+    ViewApp(GlfwWindow& window, const ViewOptions& options, ModelOpener& opener,
+            std::unique_ptr<Opening> opening);
     ~ViewApp() override;
 
     // Takes what has happened, waiting as long as nothing has to be drawn; draws what there is.
@@ -45,7 +49,6 @@ private:
     static constexpr int kUiFrames = 3;
 
     // view_app.cpp
-    void open(const std::filesystem::path& path);
     void restart();
     [[nodiscard]] double waitSeconds() const;
     void advance(double seconds);
@@ -59,6 +62,25 @@ private:
     void take(const Change& change);
     void logFrame();
     [[nodiscard]] bool isMoving() const { return isCameraMoving_; }
+
+    // view_opening.cpp
+    void open(const std::filesystem::path& model);
+    void openDatabase(const std::filesystem::path& path, const std::string& name);
+    void beginOpening(const std::filesystem::path& model, std::unique_ptr<Opening> opening);
+    void abandonOpening();
+    void followOpening();
+    void endOpening();
+    void showPreview(const Preview& preview);
+    void forgetScene();
+    void lookAt(const Box3d& box, hlod::UpAxis up);
+    void drawPreview();
+    void showOpeningPanel();
+    void cancelOpening();
+    void logPreview();
+    [[nodiscard]] bool hasModel() const { return scene_ || preview_; }
+    [[nodiscard]] std::string modelName() const;
+    [[nodiscard]] FrameTarget* target() const;
+    [[nodiscard]] std::optional<Vec3d> surfaceAt(glm::dvec2 px) const;
 
     // view_commands.cpp
     void run(Command command);
@@ -93,11 +115,14 @@ private:
     StateLog log_;
     Ui ui_;
     LineDrawer lines_;
+    ModelOpener& opener_;
     std::unique_ptr<Scene> scene_;
     std::unique_ptr<Inspection> inspection_;  // of `scene_`
     std::optional<ObjectPanel> objectPanel_;  // of `inspection_`
     std::optional<uint32_t> objectToFrame_;   // once its box has been read
+    std::unique_ptr<PreviewScene> preview_;   // in place of scene_: never both
     std::optional<Navigation> navigation_;
+    std::optional<hlod::Camera> framed_;  // where lookAt() put the camera: equal until it is moved
     Timeline timeline_;
     RateMeter readRate_;
     std::vector<Message> messages_;
@@ -111,6 +136,13 @@ private:
     std::optional<hlod::CameraPath> replay_, lastPath_;
     size_t replayFrame_ = 0;
     int replayWaits_ = 0;
+
+    std::unique_ptr<Opening> opening_;
+    std::vector<std::unique_ptr<Opening>> abandoned_;  // cancelled, and not at their end yet
+    std::filesystem::path openingModel_;
+    std::string openingStage_;
+    bool isPreviewOfOpening_ = false;  // preview_ shows openingModel_, not one opened before
+    double nextProgressS_ = 0.0;
 
     bool isSceneDirty_ = true, isCameraMoving_ = false, hasPresented_ = false;
     bool isRestartWanted_ = false;

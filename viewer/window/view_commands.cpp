@@ -44,12 +44,12 @@ void ViewApp::onKey(int key, int modifiers, bool isDown, bool isRepeat) {
 }
 
 void ViewApp::onButton(int button, int modifiers, bool isDown, glm::dvec2 px) {
-    if (!navigation_ || !scene_) return;
+    if (!navigation_ || !hasModel()) return;
     if (!isDown) {
         if (button != heldButton_) return;
         heldButton_ = -1;
         navigation_->endDrag();
-        if (pressedPx_ && isPickButton(button)) pickAt(*pressedPx_);
+        if (pressedPx_ && scene_ && isPickButton(button)) pickAt(*pressedPx_);
         pressedPx_.reset();
         return;
     }
@@ -58,7 +58,7 @@ void ViewApp::onButton(int button, int modifiers, bool isDown, glm::dvec2 px) {
     if (!drag) return;
     heldButton_ = button;
     pressedPx_ = px;
-    navigation_->beginDrag(*drag, px, scene_->surfaceAt(px));
+    navigation_->beginDrag(*drag, px, surfaceAt(px));
 }
 
 void ViewApp::onCursor(glm::dvec2 px) {
@@ -72,10 +72,10 @@ void ViewApp::onCursor(glm::dvec2 px) {
 }
 
 void ViewApp::onWheel(double steps, glm::dvec2 px) {
-    if (!navigation_ || !scene_ || ui_.wantsMouse()) return;
+    if (!navigation_ || !hasModel() || ui_.wantsMouse()) return;
     if (navigation_->mode() == NavigationMode::Orbit) {
         replay_.reset();
-        navigation_->wheel(steps, px, scene_->surfaceAt(px));
+        navigation_->wheel(steps, px, surfaceAt(px));
         isCameraMoving_ = true;
     } else {
         navigation_->setSpeedFactor(navigation_->speedFactor() * std::pow(kSpeedStep, steps));
@@ -99,24 +99,22 @@ void ViewApp::run(Command command) {
     if (command == Command::Quit) return window_.close();
     if (command == Command::ToggleHelp) settings_.showsHelp = !settings_.showsHelp;
     if (command == Command::Dismiss) dismiss();
-    if (!scene_ || !navigation_) return;
+    if (!hasModel() || !navigation_) return;
     if (runCamera(command)) {
         isCameraMoving_ = true;
         replay_.reset();
         return;
     }
+    if (command == Command::Screenshot) return saveScreenshot();
+    if (command == Command::CopyCamera) return copyCamera();
+    if (command == Command::PasteCamera) return pasteCamera();
+    if (!scene_) return;
     if (runLook(command)) {
         isSceneDirty_ = true;
         return;
     }
     if (runObjects(command)) return;
     switch (command) {
-        case Command::Screenshot:
-            return saveScreenshot();
-        case Command::CopyCamera:
-            return copyCamera();
-        case Command::PasteCamera:
-            return pasteCamera();
         case Command::RecordPath:
             return toggleRecording();
         case Command::ReplayPath:
@@ -136,7 +134,7 @@ bool ViewApp::runCamera(Command command) {
             navigation_->frameAll();
             return true;
         case Command::FramePick:
-            if (!inspection_->pick()) return false;
+            if (!inspection_ || !inspection_->pick()) return false;
             navigation_->frame(inspection_->pick()->boxModel);
             return true;
         case Command::Home:
@@ -235,15 +233,16 @@ void ViewApp::toggleFreeze() {
 std::filesystem::path ViewApp::freeName(const std::string& ending) const {
     for (int number = 1;; ++number) {
         std::filesystem::path path =
-            options_.outputFolder / fmt::format("{}-{}{}", scene_->name(), number, ending);
+            options_.outputFolder / fmt::format("{}-{}{}", modelName(), number, ending);
         std::error_code ignored;
         if (!std::filesystem::exists(path, ignored)) return path;
     }
 }
 
 void ViewApp::saveScreenshot() {
+    if (target() == nullptr) return;  // nothing was drawn yet
     const std::filesystem::path path = freeName(".png");
-    writePng(scene_->read(), path);
+    writePng(scene_ ? scene_->read() : preview_->read(), path);
     say("written: " + path.string());
     log_.write("screenshot", {{"file", path.string()}});
 }
@@ -315,6 +314,8 @@ void ViewApp::advanceReplay() {
 void ViewApp::dismiss() {
     if (settings_.showsHelp) {
         settings_.showsHelp = false;
+    } else if (opening_) {
+        cancelOpening();
     } else if (!messages_.empty()) {
         messages_.clear();
     } else if (inspection_ && inspection_->hasAsked()) {

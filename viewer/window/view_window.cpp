@@ -2,11 +2,16 @@
 
 #include "viewer/window/view_app.h"
 
+#include <utility>
+
 namespace pagoda::viewer {
 
-void runViewWindow(const ViewOptions& options, const std::function<void()>& check) {
+void runViewWindow(const ViewOptions& options, ModelOpener& opener,
+                   const std::function<void()>& check) {
+    // A raw model is looked at while the window is made.
+    std::unique_ptr<Opening> opening = options.model.empty() ? nullptr : opener.open(options.model);
     GlfwWindow window(options.widthPx, options.heightPx, "Pagoda");
-    ViewApp app(window, options);
+    ViewApp app(window, options, opener, std::move(opening));
     window.setEvents(&app);
     while (!window.shouldClose()) {
         check();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "hlod/view/camera.h"
+#include "viewer/window/model_opening.h"
 #include "viewer/window/view_settings.h"
 
 #include <filesystem>
@@ -12,7 +13,7 @@
 namespace pagoda::viewer {
 
 struct ViewOptions {
-    std::filesystem::path database;  // empty: the window waits for one to be dropped
+    std::filesystem::path model;  // a database or a raw model; empty: the window waits for a drop
     ViewSettings settings;
     int widthPx = 1280, heightPx = 800;
     std::string cameraJson;              // empty: all of the model, from the front and above
@@ -21,8 +22,10 @@ struct ViewOptions {
     std::filesystem::path stateLog;      // StateLog; empty: none
 };
 
-// `check` is called often and may throw to end it all. Throws Error when there is no display or no
-// OpenGL 4.5, or `database` cannot be opened; later ones are shown in the window.
-void runViewWindow(const ViewOptions& options, const std::function<void()>& check);
+// `opener` opens what is no database. `check` is called often and may throw to end it all. Throws
+// Error when there is no display or no OpenGL 4.5, when `model` is a database that cannot be
+// opened, or does not exist; what goes wrong later is shown in the window.
+void runViewWindow(const ViewOptions& options, ModelOpener& opener,
+                   const std::function<void()>& check);
 
 }  // namespace pagoda::viewer
