@@ -1,4 +1,5 @@
 #include "ooc/base/number_text.h"
+#include "viewer/window/panel_parts.h"
 #include "viewer/window/panels.h"
 #include "viewer/window/ui.h"
 
@@ -12,11 +13,6 @@
 namespace pagoda::viewer {
 namespace {
 
-// Numbers only: the model is dragged through them.
-constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoDecoration |
-                                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
-                                    ImGuiWindowFlags_NoSavedSettings |
-                                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
 constexpr ImU32 kStreamColour = IM_COL32(94, 160, 210, 255);
 constexpr ImU32 kTraverseColour = IM_COL32(232, 196, 84, 255);
 constexpr ImU32 kQueryColour = IM_COL32(202, 110, 178, 255);
@@ -108,7 +104,7 @@ void showHud(const Scene& scene, const ViewSettings& settings, const Streaming& 
     const float em = ImGui::GetFontSize();
     const hlod::FrameRecord& record = scene.record();
     ImGui::SetNextWindowPos({0.7f * em, 0.7f * em});
-    ImGui::Begin("numbers", nullptr, kFixed);
+    ImGui::Begin("numbers", nullptr, kTellingPanel);
     ImGui::TextUnformatted(scene.name().c_str());
     ImGui::SameLine();
     ImGui::TextDisabled("%s", record.strategy.c_str());

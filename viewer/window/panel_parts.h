@@ -9,6 +9,8 @@ namespace pagoda::viewer {
 inline constexpr ImGuiWindowFlags kFixedPanel =
     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
+// Of a panel that only tells something: the mouse goes on to the model behind it.
+inline constexpr ImGuiWindowFlags kTellingPanel = kFixedPanel | ImGuiWindowFlags_NoInputs;
 inline const ImVec4 kAccent(0.56f, 0.80f, 0.94f, 1.0f);
 inline const ImVec4 kAlarm(1.0f, 0.50f, 0.42f, 1.0f);
 

@@ -155,7 +155,7 @@ void objectText(const Inspection& inspection) {
 void showPick(const Scene& scene, const Inspection& inspection) {
     const float em = ImGui::GetFontSize();
     placePanel(1.0f, 1.0f, 0.7f * em, 2.6f * em);
-    ImGui::Begin("pick", nullptr, kFixedPanel);
+    ImGui::Begin("pick", nullptr, kTellingPanel);
     objectText(inspection);
     if (ImGui::BeginTable("rows", 2)) {
         if (inspection.exact()) exactRows(*inspection.exact());
