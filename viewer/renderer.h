@@ -31,7 +31,7 @@ struct RendererOptions {
     uint64_t uploadBytesPerFrame = 0;          // 0: no bound
     uint32_t queryLatencyFrames = 0;
     PyramidOptions pyramid{};
-    bool doesPrefetch = false;      // along the camera's motion
+    bool doesPrefetch = false;  // along the camera's motion
     hlod::PrefetchReasons prefetchReasons = hlod::PrefetchReasons().set();
     cache::DiskProfile disk{};      // simulated in front of the real one
     cache::Clock* clock = nullptr;  // outlives the renderer; null: the wall's

@@ -1,7 +1,7 @@
 // replay.h: draws the cut that another strategy drew in a frame, without culling: the truth that
-// its pixels are held against, zippers and all. What it hid is drawn by its own cut at tau. Nodes that were drawn
-// although something below them was drawn or hidden too (RARN, stand-ins) are left out. Not in the
-// table of strategies.
+// its pixels are held against, zippers and all. What it hid is drawn by its own cut at tau. Nodes
+// that were drawn although something below them was drawn or hidden too (RARN, stand-ins) are left
+// out. Not in the table of strategies.
 #pragma once
 
 #include "hlod/view/frame_cut.h"

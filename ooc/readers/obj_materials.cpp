@@ -13,7 +13,7 @@ namespace pagoda::ooc {
 namespace {
 
 uint32_t channel(double value) {
-    return value > 0.0 ? static_cast<uint32_t>(std::min(value, 1.0) * 255.0 + 0.5) : 0u;
+    return value > 0.0 ? static_cast<uint32_t>(std::lround(std::min(value, 1.0) * 255.0)) : 0u;
 }
 
 // Names as Windows writes them.
