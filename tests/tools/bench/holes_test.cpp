@@ -163,7 +163,8 @@ TEST(Holes, AreThoseOfTheDefinitionInRandomPictures) {
             show(leaves, p, kOfLeaf, 10.0f + static_cast<float>(random() % 3));
             if (chance(60)) show(leaves, p, kNone, INFINITY);
             if (chance(60)) showPane(leaves, p);
-            show(drawn.picture, p, 1 + random() % 3, 10.0f + static_cast<float>(random() % 5));
+            show(drawn.picture, p, 1 + static_cast<uint32_t>(random() % 3),
+                 10.0f + static_cast<float>(random() % 5));
             if (chance(8)) show(drawn.picture, p, kNone, INFINITY);
             if (chance(8)) showPane(drawn.picture, p);
         }
