@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -29,7 +30,7 @@ void showPane(viewer::Picture& picture, size_t pixel) {
 DrawnPicture wall(int width = 9, int height = 9) {
     DrawnPicture made;
     viewer::Picture& picture = made.picture;
-    const auto count = static_cast<size_t>(width * height);
+    const auto count = static_cast<size_t>(width) * static_cast<size_t>(height);
     picture.widthPx = width;
     picture.heightPx = height;
     picture.colours.assign(4 * count, 100);
@@ -120,6 +121,10 @@ TEST(Holes, WhatIsTranslucentAloneCoversAndHasNoDepth) {
     EXPECT_EQ(countHoles(drawn, wall().picture), 2u) << "nor does a pane close a wall";
 }
 
+size_t pixelAt(const viewer::Picture& picture, int x, int y) {
+    return static_cast<size_t>(y) * static_cast<size_t>(picture.widthPx) + static_cast<size_t>(x);
+}
+
 // The definition, pixel by pixel.
 uint64_t holesByDefinition(const DrawnPicture& drawn, const viewer::Picture& leaves) {
     const viewer::Picture& picture = drawn.picture;
@@ -133,12 +138,14 @@ uint64_t holesByDefinition(const DrawnPicture& drawn, const viewer::Picture& lea
                 for (int u = x - reach; u <= x + reach; ++u) {
                     const bool isIn =
                         u >= 0 && v >= 0 && u < picture.widthPx && v < picture.heightPx;
-                    const auto at = static_cast<size_t>(v * picture.widthPx + u);
-                    isCovered = isCovered && isIn && leaves.colours[4 * at + 3] != 0;
-                    if (isCovered) farthest = std::max(farthest, 1.0 * leaves.depthsModelUnits[at]);
+                    isCovered = isCovered && isIn;
+                    if (!isCovered) continue;
+                    const size_t at = pixelAt(picture, u, v);
+                    isCovered = leaves.colours[4 * at + 3] != 0;
+                    farthest = std::max(farthest, 1.0 * leaves.depthsModelUnits[at]);
                 }
             }
-            const auto at = static_cast<size_t>(y * picture.widthPx + x);
+            const size_t at = pixelAt(picture, x, y);
             const uint32_t ordinal = picture.nodeOrdinals[at];
             const double error = ordinal == kNone ? 0 : drawn.errorsModelUnits[ordinal - 1];
             const bool isBackground = picture.colours[4 * at + 3] == 0;
@@ -163,7 +170,8 @@ TEST(Holes, AreThoseOfTheDefinitionInRandomPictures) {
             show(leaves, p, kOfLeaf, 10.0f + static_cast<float>(random() % 3));
             if (chance(60)) show(leaves, p, kNone, INFINITY);
             if (chance(60)) showPane(leaves, p);
-            show(drawn.picture, p, 1 + random() % 3, 10.0f + static_cast<float>(random() % 5));
+            show(drawn.picture, p, 1 + static_cast<uint32_t>(random() % 3),
+                 10.0f + static_cast<float>(random() % 5));
             if (chance(8)) show(drawn.picture, p, kNone, INFINITY);
             if (chance(8)) showPane(drawn.picture, p);
         }
