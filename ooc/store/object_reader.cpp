@@ -87,7 +87,11 @@ void ObjectReader::search(const std::string& text) {
         arrivals_.matches.clear();
         arrivals_.searchedShare.reset();
         search_.reset();
-        if (isSearching_) search_.emplace().text = inSmallLetters(text);
+        if (isSearching_) {
+            SearchTask task;
+            task.text = inSmallLetters(text);
+            search_ = std::move(task);
+        }
     }
     hasWork_.notify_one();
 }
@@ -99,7 +103,11 @@ void ObjectReader::wantVisibleBox(std::shared_ptr<const ObjectSet> hidden) {
         ++boxNumber_;
         arrivals_.box.reset();
         box_.reset();
-        if (hidden && !hidden->isEmpty()) box_.emplace().hidden = std::move(hidden);
+        if (hidden && !hidden->isEmpty()) {
+            BoxTask task;
+            task.hidden = std::move(hidden);
+            box_ = std::move(task);
+        }
     }
     hasWork_.notify_one();
 }

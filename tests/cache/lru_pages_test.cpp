@@ -242,6 +242,7 @@ TEST(LruPages, WhoMovedOnWithMostOfThemGoesInTheOrderOfItsLastUse) {
         }
     }
     std::vector<std::pair<uint64_t, PageId>> order;
+    order.reserve(lastFrames.size());
     for (const auto& [id, last] : lastFrames) order.emplace_back(last, id);
     std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
         return a.first != b.first ? a.first < b.first : b.second < a.second;

@@ -138,7 +138,7 @@ TEST(SurfaceSketch, TwoSidesOfAThinWallDoNotCancel) {
     for (int i = 0; i < 40; ++i) {
         const double x = 0.1 * i;
         sketch.add({x, 0, 0}, {x + 0.1, 0, 0}, {x, 0.1, 0}, 0xFFFFFFFFu);
-        sketch.add({x, 0, -1e-4}, {x, 0.1, -1e-4}, {x + 0.1, 0, -1e-4}, 0xFFFFFFFFu);
+        sketch.add({x, 0, 1e-4}, {x, 0.1, 1e-4}, {x + 0.1, 0, 1e-4}, 0xFFFFFFFFu);
     }
     for (const viewer::PreviewVertex& disc : sketch.picture(false).discs) {
         EXPECT_NEAR(std::abs(disc.normal.z), 1.0f, 1e-5f);
