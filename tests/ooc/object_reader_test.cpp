@@ -65,9 +65,10 @@ struct Made {
     std::vector<ObjectRecord> objects;
     std::filesystem::path path;
     explicit Made(uint32_t count) : path(folder.path() / "a.pagoda") {
-        writeDatabase(path, {.spoil = [&](DatabaseWriter::Content& content) {
-                          content.objects = objects = manyObjects(count, content.objects);
-                      }});
+        static_cast<void>(writeDatabase(path, {.spoil = [&](DatabaseWriter::Content& content) {
+                                            content.objects = objects =
+                                                manyObjects(count, content.objects);
+                                        }}));
     }
 };
 
@@ -176,7 +177,7 @@ TEST(ObjectReader, ABrokenBlockCostsItsNamesAlone) {
     auto hidden = std::make_shared<ObjectSet>(20'000);
     hidden->insert(0);
     rig.reader.wantVisibleBox(hidden);
-    rig.reader.record(19'999);
+    static_cast<void>(rig.reader.record(19'999));
     rig.until([&] { return rig.reader.record(19'998) != nullptr; });
     EXPECT_FALSE(rig.reader.visibleBox());
 }
