@@ -12,7 +12,8 @@
 #   --results FOLDER          writes there
 #
 # centre      plant 12M, interior 5M, lego-show-a; inside; 640x480; latency 0; all strategies;
-#             200 frames, 3 timed passes
+#             200 frames, 3 timed passes. frustum, whose frames cost ten of any other's, is set
+#             against bool and coh in a run of its own, with one timed pass
 # variations  coh, bool, frustum over 60 frames, one timed pass: outside; 1024x768; paths at 4 times
 #             the speed; query latency 1, 2; and the scenes city 10M, torus 10M (with auto), hospital,
 #             clinic. coh over 200 frames: prefetch; a disk of 500 MB/s, live
@@ -177,7 +178,8 @@ quick() {
 centre() {
     local scene
     for scene in plant interior lego-show-a; do
-        run $scene-walk $scene walk --strategy "$all" --repeats 3 --truth-every 4
+        run $scene-walk $scene walk --strategy "${all#frustum,}" --repeats 3 --truth-every 4
+        run $scene-walk-frustum $scene walk --strategy $few --repeats 1 --truth-every 0
     done
 }
 
