@@ -11,6 +11,18 @@ target_compile_options(pagoda_options INTERFACE
   -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=
   $<$<BOOL:${PAGODA_WERROR}>:-Werror>)
 
+# pagoda_precompile(TARGET HEADERS...): what most of its sources include, parsed once. Of targets with
+# few sources it would cost more than it saves.
+set(pagoda_common_headers <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory>
+  <optional> <span> <string> <unordered_map> <unordered_set> <variant> <vector> <glm/glm.hpp> <fmt/format.h>)
+function(pagoda_precompile target)
+  get_target_property(sources ${target} SOURCES)
+  list(LENGTH sources count)
+  if(PAGODA_PCH AND count GREATER 7)
+    target_precompile_headers(${target} PRIVATE ${pagoda_common_headers} ${ARGN})
+  endif()
+endfunction()
+
 # pagoda_library(NAME SOURCES...): static library pagoda_NAME, alias Pagoda::NAME.
 # A folder that is planned but still empty gets an empty source, so that it can be linked already.
 function(pagoda_library name)
@@ -26,4 +38,5 @@ function(pagoda_library name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/pagoda>)
   target_link_libraries(pagoda_${name} PRIVATE $<BUILD_INTERFACE:pagoda_options>)
   target_compile_features(pagoda_${name} PUBLIC cxx_std_20)
+  pagoda_precompile(pagoda_${name})
 endfunction()

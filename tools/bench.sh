@@ -13,9 +13,10 @@
 #
 # centre      plant 12M, interior 5M, lego-show-a; inside; 640x480; latency 0; all strategies;
 #             200 frames, 3 timed passes. frustum, whose frames cost ten of any other's, is set
-#             against bool and coh in a run of its own, with one timed pass
+#             against bool and coh in a run of its own, with one timed pass of 60 frames
 # variations  coh, bool, frustum over 60 frames, one timed pass: outside; 1024x768; paths at 4 times
-#             the speed; query latency 1, 2; and the scenes city 10M, torus 10M (with auto), hospital,
+#             the speed; query latency 1, 2; the same cut in a sixteenth of the pixels (bool, simp,
+#             coh: what their times are beside shading); and the scenes city 10M, torus 10M (with auto), hospital,
 #             clinic. coh over 200 frames: prefetch; a disk of 500 MB/s, live
 # Scenes are built with 2048 triangles a node, as in the paper of coherent HLOD culling; walks turn by
 # 1 degree a frame. Prefetch is off but where a run is about it: it would read what culling spares.
@@ -179,7 +180,7 @@ centre() {
     local scene
     for scene in plant interior lego-show-a; do
         run $scene-walk $scene walk --strategy "${all#frustum,}" --repeats 3 --truth-every 4
-        run $scene-walk-frustum $scene walk --strategy $few --repeats 1 --truth-every 0
+        run $scene-walk-frustum $scene walk --strategy $few --frames 60 --repeats 1 --truth-every 0
     done
 }
 
@@ -193,6 +194,8 @@ variations() {
         run $scene-walk-speed4 $scene walk --strategy $few "${brief[@]}" --speed 4
         run $scene-walk-latency1 $scene walk --strategy $few "${brief[@]}" --query-latency 1
         run $scene-walk-latency2 $scene walk --strategy $few "${brief[@]}" --query-latency 2
+        run $scene-walk-pixels $scene walk --strategy bool,simp,coh "${brief[@]}" --size 160x120 \
+            --tau 0.25
         run $scene-walk-prefetch $scene walk --strategy coh --prefetch on --repeats 0 --truth-every 0
         run $scene-walk-disk500 $scene walk --strategy coh --prefetch on --repeats 0 \
             --truth-every 0 --no-settled --disk 500MB/s

@@ -12,8 +12,11 @@ namespace pagoda::tools {
 hlod::StrategyOptions RuntimeOptions::strategyOptions() const {
     hlod::StrategyOptions options;
     options.caution = caution;
-    if (bias.empty()) return options;
-    if (bias == "paper") return hlod::kPaperOptions;
+    if (bias == "paper") options = hlod::kPaperOptions;
+    options.retestEvery = retestEvery;
+    options.hiddenBatch = hiddenBatch;
+    options.hysteresis = hysteresis;
+    if (bias.empty() || bias == "paper") return options;
     const auto isShare = [](double value) { return value >= 0.0 && value <= 1.0; };
     int read = 0;
     bool isWhole =
@@ -82,6 +85,24 @@ void addRuntimeOptions(CLI::App& command, RuntimeOptions& options) {
     command
         .add_option("--caution", options.caution,
                     "Wait for the answer where an error is foretold within this share of tau")
+        ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str();
+    command
+        .add_option("--retest", options.retestEvery,
+                    "Ask about what was seen in every N-th frame only while the camera moves")
+        ->type_name("N")
+        ->check(CLI::Range(1u, 1000u))
+        ->capture_default_str();
+    command
+        .add_option("--batch-hidden", options.hiddenBatch,
+                    "Ask about N boxes together that were hidden for some frames")
+        ->type_name("N")
+        ->check(CLI::Range(1u, 1000u))
+        ->capture_default_str();
+    command
+        .add_option("--hysteresis", options.hysteresis,
+                    "Draw a node in place of its children only when its error is less than tau by "
+                    "this share")
         ->check(CLI::Range(0.0, 10.0))
         ->capture_default_str();
     command

@@ -20,6 +20,8 @@ struct RuntimeOptions {
     double tauPx = 1;
     std::string bias;  // "S,T" or a preset; empty: the default
     double caution = hlod::StrategyOptions{}.caution;
+    uint32_t retestEvery = 1, hiddenBatch = 1;
+    double hysteresis = 0;
     uint32_t queryLatencyFrames = 0;
     std::string hostBudget = "256MiB", gpuBudget = "1GiB", uploadBudget;
     std::string disk = "as-is";

@@ -22,6 +22,8 @@ fi
 processes=$(nproc)
 share=$(((frames + processes - 1) / processes))
 running=()
+# Processes in the background do not hear Ctrl-C.
+trap 'kill "${running[@]}" 2>/dev/null || true' EXIT INT TERM
 for ((i = 0; i < processes; ++i)); do
     "$soak" "$share" "$((seed + i))" &
     running+=($!)

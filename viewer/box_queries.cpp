@@ -98,7 +98,8 @@ void BoxQueries::drawBox(const Box3d& boxModel) {
 hlod::QueryTicket BoxQueries::query(const hlod::QueryShape& shape) {
     flushDraws_();
     Stopwatch watch;
-    assert(std::holds_alternative<Box3d>(shape));
+    const auto* const together = std::get_if<std::vector<Box3d>>(&shape);
+    assert(together != nullptr || std::holds_alternative<Box3d>(shape));
     for (GLuint output = 0; output < 3; ++output) {
         glColorMaski(output, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     }
@@ -110,7 +111,11 @@ hlod::QueryTicket BoxQueries::query(const hlod::QueryShape& shape) {
     glBindVertexArray(emptyArray_.id());
     const GlId name = takeName();
     glBeginQuery(GL_SAMPLES_PASSED, name);
-    drawBox(std::get<Box3d>(shape));
+    if (together != nullptr) {
+        for (const Box3d& box : *together) drawBox(box);
+    } else {
+        drawBox(std::get<Box3d>(shape));
+    }
     glEndQuery(GL_SAMPLES_PASSED);
     glDisable(GL_CULL_FACE);
     glDisable(GL_DEPTH_CLAMP);

@@ -28,10 +28,11 @@ public:
     void beginFrame(const hlod::View& view, const LatticeView& latticeView,
                     const ooc::Lattice& lattice);
 
-    // Of boxes along the axes; other shapes are not implemented here.
+    // Of boxes along the axes, one or more; other shapes are not implemented here.
     [[nodiscard]] hlod::QueryTicket query(const hlod::QueryShape& shape) override;
     [[nodiscard]] std::optional<uint64_t> poll(hlod::QueryTicket ticket) override;
     [[nodiscard]] uint64_t wait(hlod::QueryTicket ticket) override;
+    void abandonAll() override { freeNames_ = names_; }
     [[nodiscard]] bool isPollFree() const override { return isPollFree_; }
 
     [[nodiscard]] uint64_t queriesThisFrame() const noexcept { return queries_; }

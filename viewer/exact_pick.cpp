@@ -1,5 +1,6 @@
 #include "viewer/exact_pick.h"
 
+#include <exception>
 #include <utility>
 
 namespace pagoda::viewer {
@@ -41,6 +42,18 @@ std::optional<hlod::LeafRayResult> ExactPick::take() {
     return std::exchange(answer_, std::nullopt);
 }
 
+// Nothing may be thrown out of the thread: memory may be short.
+hlod::LeafRayResult ExactPick::castSafely(const hlod::LeafRay& ray,
+                                          const std::function<bool()>& isCancelled) const {
+    try {
+        return hlod::castLeafRay(source_, lattice_, ray, isCancelled);
+    } catch (const std::exception& error) {
+        hlod::LeafRayResult result;
+        result.faults.emplace_back(error.what());
+        return result;
+    }
+}
+
 void ExactPick::work() {
     std::unique_lock lock(rayMutex_);
     while (true) {
@@ -49,7 +62,7 @@ void ExactPick::work() {
         const hlod::LeafRay ray = *std::exchange(ray_, std::nullopt);
         const uint64_t number = number_;
         lock.unlock();
-        hlod::LeafRayResult result = hlod::castLeafRay(source_, lattice_, ray, [&] {
+        hlod::LeafRayResult result = castSafely(ray, [&] {
             const std::lock_guard asking(rayMutex_);
             return number != number_;
         });

@@ -30,6 +30,8 @@ public:
 
 private:
     void work();
+    [[nodiscard]] hlod::LeafRayResult castSafely(const hlod::LeafRay& ray,
+                                                 const std::function<bool()>& isCancelled) const;
 
     const cache::PageSource& source_;
     ooc::Lattice lattice_;

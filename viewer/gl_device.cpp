@@ -54,13 +54,14 @@ std::vector<hlod::Node> translucentBackToFront(std::span<const hlod::Node> nodes
 
 GlDevice::GlDevice(const ooc::Lattice& lattice, uint64_t gpuBudgetBytes,
                    const PyramidOptions& pyramid)
-    : lattice_(lattice),
+    : drawsOnCpu_(isSoftwareRenderer()),
+      lattice_(lattice),
       store_(gpuBudgetBytes),
       drawer_(store_),
-      queries_([this] { flush(); }, [this] { restoreState(); }, !isSoftwareRenderer()),
+      queries_([this] { flush(); }, [this] { restoreState(); }, !drawsOnCpu_),
       pushesOccluders_(pyramid.pushesOccluders) {
-    const bool isOnCpu = pyramid.place == PyramidPlace::Auto ? isSoftwareRenderer()
-                                                             : pyramid.place == PyramidPlace::Cpu;
+    const bool isOnCpu =
+        pyramid.place == PyramidPlace::Auto ? drawsOnCpu_ : pyramid.place == PyramidPlace::Cpu;
     if (isOnCpu) {
         depthTests_ = std::make_unique<CpuDepthTests>([this] { flush(); });
     } else {

@@ -35,6 +35,7 @@ public:
 
     void beginFrame(const hlod::View& view) override;
     void draw(const hlod::Node& node) override;
+    [[nodiscard]] bool drawsOnCpu() const override { return drawsOnCpu_; }
     [[nodiscard]] hlod::CountingVisibility* counting() override { return &queries_; }
     [[nodiscard]] hlod::PyramidVisibility* pyramid() override { return depthTests_.get(); }
     void endFrame(const hlod::FrameCut& cut, hlod::FrameRecord& record) override;
@@ -60,6 +61,7 @@ private:
     [[nodiscard]] glm::u8vec4 tintOf(const hlod::Node& node) const;
     void drawZippers(const hlod::FrameCut& cut, hlod::FrameRecord& record);
 
+    bool drawsOnCpu_;
     ooc::Lattice lattice_;
     MeshStore store_;
     NodeProgram program_;

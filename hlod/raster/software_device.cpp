@@ -33,12 +33,18 @@ void SoftwareDevice::Queries::beginFrame(const View& view) {
 }
 
 QueryTicket SoftwareDevice::Queries::query(const QueryShape& shape) {
-    assert(std::holds_alternative<Box3d>(shape));
+    const auto* const together = std::get_if<std::vector<Box3d>>(&shape);
+    assert(together != nullptr || std::holds_alternative<Box3d>(shape));
     if (isStale_) boxes_.setDepths(*view_, drawn_.picture().depths);
     isStale_ = false;
     ++queries_;
     const uint64_t ticket = nextTicket_++;
-    answers_[ticket] = boxes_.visiblePixels(std::get<Box3d>(shape));
+    uint64_t& pixels = answers_[ticket];
+    if (together != nullptr) {
+        for (const Box3d& box : *together) pixels += boxes_.visiblePixels(box);
+    } else {
+        pixels = boxes_.visiblePixels(std::get<Box3d>(shape));
+    }
     return {ticket};
 }
 

@@ -28,6 +28,7 @@ public:
 
     void beginFrame(const View& view) override;
     void draw(const Node& node) override;
+    [[nodiscard]] bool drawsOnCpu() const override { return true; }
     [[nodiscard]] CountingVisibility* counting() override {
         return hasCounting_ ? &queries_ : nullptr;
     }
@@ -48,6 +49,7 @@ private:
             return wait(ticket);
         }
         [[nodiscard]] uint64_t wait(QueryTicket ticket) override;
+        void abandonAll() override { answers_.clear(); }
         [[nodiscard]] bool isPollFree() const override { return isPollFree_; }
         bool isPollFree_ = false, isStale_ = true;  // stale: drawn since
         uint64_t queries_ = 0;

@@ -1,9 +1,11 @@
-// Picks what pays: occlusion by queries (coh), by a depth pyramid (hzb), or none (frustum). Each
-// candidate with answers is tried for a few frames and timed; what frustum would cost is told from
-// its cut's triangles and the time a triangle took, so that a deep scene never has to be drawn
+// Picks what pays: occlusion by queries (coh), by a depth pyramid (hzb), or none (frustum). The
+// first two are one traversal with one memory: they are tried in turns, frame by frame, so that a
+// moving camera favours neither and nothing has to be learnt again. What frustum would cost is told
+// from its cut's triangles and the time a triangle took, so that a deep scene never has to be drawn
 // whole to find that out; it is tried only where that comes near. The choice is looked at again
 // when the scene has changed, more and more seldom while it keeps being confirmed, and never while
 // the camera stands still: a still picture stays as it is.
+#include "hlod/strategies/coherent.h"
 #include "hlod/strategies/strategies.h"
 
 #include <fmt/format.h>
@@ -15,65 +17,64 @@
 namespace pagoda::hlod {
 namespace {
 
-constexpr int kTrialFrames = 4;      // of a candidate; the first half only fills its memory
-constexpr uint64_t kFirstRest = 60;  // frames between two looks
+constexpr size_t kTurns = 4;          // timed frames of each of those that are tried in turns
+constexpr size_t kFrustumFrames = 3;  // timed frames of frustum
+constexpr uint64_t kFirstRest = 60;   // frames between two looks
 constexpr uint64_t kLongestRest = 960;
-constexpr double kChange = 1.25;  // of drawn triangles: look again
-constexpr double kNear = 1.5;     // frustum is tried when foretold below so many times the best
+constexpr double kChange = 1.25;   // of drawn triangles: look again
+constexpr double kNear = 1.5;      // frustum is tried when foretold below so many times the best
+constexpr double kWorthIt = 0.97;  // of what the last choice costs: another takes its place
 
 class AutoStrategy final : public Strategy {
 public:
     explicit AutoStrategy(const StrategyOptions& options)
-        : candidates_{{{"coh", makeCohStrategy(options)},
-                       {"hzb", makeHzbStrategy(options)},
-                       {"frustum", makeFrustumStrategy(options)}}} {}
+        : culling_(CoherentRules{.options = options}), frustum_(makeFrustumStrategy(options)) {}
 
     void traverse(FrameContext& frame) override {
         learn(frame);
-        if (!hasBegun_) begin(frame);
-        if (isTrying_ && framesTried_ == kTrialFrames) nextTrial(frame);
-        if (!isTrying_ && !frame.isSameView && mustLook()) startTrials(frame);
-        Candidate& candidate = candidates_[current_];
-        candidate.strategy->traverse(frame);
-        frame.record.choice = fmt::format("{}: {}", candidate.name, why_);
-        if (isTrying_) ++framesTried_;
+        if (!hasBegun_) {
+            hasBegun_ = true;
+            rest_ = kFirstRest;
+            startTrials(frame);
+        } else if (frame.isSameView) {
+            // A still picture stays as it is.
+        } else if (isTrying_) {
+            goOnTrying(frame);
+        } else if (mustLook()) {
+            startTrials(frame);
+        }
+        wasSameView_ = frame.isSameView;
+        if (current_ == kFrustum) {
+            frustum_->traverse(frame);
+        } else {
+            culling_.usePyramid(current_ == kHzb);
+            culling_.traverse(frame);
+        }
+        frame.record.choice = fmt::format("{}: {}", kNames[current_], why_);
         ++framesSinceLook_;
     }
 
     void forget() override {
-        for (Candidate& candidate : candidates_) candidate.strategy->forget();
+        culling_.forget();
+        frustum_->forget();
         hasBegun_ = false;
     }
 
-    [[nodiscard]] bool learnsWhatIsHidden() const override {
-        return candidates_[current_].strategy->learnsWhatIsHidden();
-    }
+    [[nodiscard]] bool learnsWhatIsHidden() const override { return current_ != kFrustum; }
 
 private:
-    static constexpr size_t kCoh = 0, kHzb = 1, kFrustum = 2;
-    struct Candidate {
-        const char* name;
-        std::unique_ptr<Strategy> strategy;
-        double costMs = -1;  // of a frame; below 0: not known
-    };
+    enum Choice : uint8_t { kCoh, kHzb, kFrustum };
+    static constexpr std::array kNames = {"coh", "hzb", "frustum"};
 
-    void begin(FrameContext& frame) {
-        hasBegun_ = true;
-        rest_ = kFirstRest;
-        startTrials(frame);
-    }
-
-    // What the last frame cost belongs to the candidate that ran it.
+    // What the last frame cost belongs to the one that ran it.
     void learn(const FrameContext& frame) {
         if (!hasBegun_ || frame.lastRecord == nullptr) return;
         const FrameRecord& last = *frame.lastRecord;
-        if (last.missingPages > 0) return;  // loading, not drawing
+        // Else it was loading, not only drawing; or it had little to do.
+        if (last.missingPages > 0 || wasSameView_) return;
         drawnTriangles_ = static_cast<double>(last.drawnTriangles);
-        if (isTrying_ && framesTried_ > kTrialFrames / 2) trialMs_.push_back(last.frameMs);
-        if (last.drawnTriangles > 0) {
-            const double ms = last.frameMs - last.queryMs - last.streamMs;
-            msPerTriangle_ = ms / drawnTriangles_;
-        }
+        if (isTrying_) times_[current_].push_back(frame.lastCostMs);
+        if (last.drawnTriangles > 0) msPerTriangle_ = frame.lastCostMs / drawnTriangles_;
     }
 
     [[nodiscard]] bool mustLook() const {
@@ -84,71 +85,74 @@ private:
 
     void startTrials(FrameContext& frame) {
         before_ = current_;
-        trials_.clear();
-        if (frame.sink.counting() != nullptr) trials_.push_back(kCoh);
-        if (frame.sink.pyramid() != nullptr) trials_.push_back(kHzb);
-        isTrying_ = true;
+        hasQueries_ = frame.sink.counting() != nullptr;
+        hasPyramid_ = frame.sink.pyramid() != nullptr;
+        for (std::vector<double>& times : times_) times.clear();
+        costMs_.fill(kUnknown);
         framesSinceLook_ = 0;
-        if (trials_.empty()) {
+        isTrying_ = true;
+        why_ = "being tried";
+        if (!hasQueries_ && !hasPyramid_) {
             choose(kFrustum, "no answers to be had from this device");
         } else {
-            startTrial();
+            current_ = hasQueries_ ? kCoh : kHzb;
         }
     }
 
-    void startTrial() {
-        current_ = trials_.back();
-        trials_.pop_back();
-        framesTried_ = 0;
-        trialMs_.clear();
-        why_ = "being tried";
-    }
-
-    void nextTrial(FrameContext& frame) {
-        std::sort(trialMs_.begin(), trialMs_.end());
-        // Nothing was timed while pages were missing: once more.
-        if (trialMs_.empty()) {
-            framesTried_ = 0;
+    void goOnTrying(FrameContext& frame) {
+        if (current_ == kFrustum) {
+            // The first frame had its own pages to draw for the first time.
+            if (times_[kFrustum].size() <= kFrustumFrames) return;
+            costMs_[kFrustum] = median(times_[kFrustum], 1);
+            return chooseCheapest();
+        }
+        const Choice other = current_ == kCoh ? kHzb : kCoh;
+        const bool hasOther = hasQueries_ && hasPyramid_;
+        const bool isEnough =
+            times_[current_].size() >= kTurns && (!hasOther || times_[other].size() >= kTurns);
+        if (!isEnough) {
+            if (hasOther && times_[other].size() <= times_[current_].size()) current_ = other;
             return;
         }
-        candidates_[current_].costMs = trialMs_[trialMs_.size() / 2];
-        if (!trials_.empty()) return startTrial();
-        const size_t best = cheapest(current_ == kFrustum);
-        if (current_ != kFrustum && isFrustumNear(frame, candidates_[best].costMs)) {
-            trials_.push_back(kFrustum);
-            return startTrial();
-        }
-        choose(best, fmt::format("{:.1f} ms a frame; {}", candidates_[best].costMs, others(best)));
+        if (hasQueries_) costMs_[kCoh] = median(times_[kCoh], 0);
+        if (hasPyramid_) costMs_[kHzb] = median(times_[kHzb], 0);
+        const Choice best = cheapest();
+        if (!isFrustumNear(frame, costMs_[best])) return chooseCheapest();
+        current_ = kFrustum;
     }
 
-    [[nodiscard]] size_t cheapest(bool withFrustum) const {
-        size_t best = kCoh;
-        double least = -1;
-        for (size_t i = 0; i < candidates_.size(); ++i) {
-            const double cost = candidates_[i].costMs;
-            if (cost < 0 || (i == kFrustum && !withFrustum)) continue;
-            if (least < 0 || cost < least) {
-                least = cost;
-                best = i;
-            }
+    [[nodiscard]] static double median(std::vector<double> times, size_t from) {
+        const auto begin = times.begin() + static_cast<std::ptrdiff_t>(from);
+        const auto middle = begin + (times.end() - begin) / 2;
+        std::nth_element(begin, middle, times.end());
+        return *middle;
+    }
+
+    // Of those that were tried.
+    [[nodiscard]] Choice cheapest() const {
+        Choice best = before_;
+        if (times_[best].empty()) best = hasQueries_ ? kCoh : kHzb;
+        for (const Choice other : {kCoh, kHzb, kFrustum}) {
+            if (!times_[other].empty() && costMs_[other] < kWorthIt * costMs_[best]) best = other;
         }
         return best;
     }
 
-    [[nodiscard]] std::string others(size_t best) const {
-        std::string text;
-        for (size_t i = 0; i < candidates_.size(); ++i) {
-            if (i == best || candidates_[i].costMs < 0) continue;
-            text += fmt::format("{}{} {:.1f}", text.empty() ? "" : ", ", candidates_[i].name,
-                                candidates_[i].costMs);
+    void chooseCheapest() {
+        const Choice best = cheapest();
+        std::string others;
+        for (const Choice other : {kCoh, kHzb, kFrustum}) {
+            if (other == best || costMs_[other] == kUnknown) continue;
+            others += fmt::format("{}{} {:.1f}", others.empty() ? "" : ", ", kNames[other],
+                                  costMs_[other]);
         }
-        return text;
+        choose(best, fmt::format("{:.1f} ms a frame; {}", costMs_[best], others));
     }
 
-    void choose(size_t candidate, std::string why) {
+    void choose(Choice choice, std::string why) {
         isTrying_ = false;
-        current_ = candidate;
-        rest_ = candidate == before_ ? std::min(2 * rest_, kLongestRest) : kFirstRest;
+        current_ = choice;
+        rest_ = choice == before_ ? std::min(2 * rest_, kLongestRest) : kFirstRest;
         trianglesAtChoice_ = drawnTriangles_;
         framesSinceLook_ = 0;
         why_ = std::move(why);
@@ -158,7 +162,7 @@ private:
     [[nodiscard]] bool isFrustumNear(FrameContext& frame, double bestMs) {
         const double limit = kNear * bestMs / std::max(msPerTriangle_, 1e-9);
         const double triangles = trianglesOfCut(frame, limit);
-        candidates_[kFrustum].costMs = triangles * msPerTriangle_;
+        costMs_[kFrustum] = triangles * msPerTriangle_;
         return triangles <= limit;
     }
 
@@ -180,12 +184,15 @@ private:
         return triangles;
     }
 
-    std::array<Candidate, 3> candidates_;
-    size_t current_ = kCoh, before_ = kCoh;
-    bool hasBegun_ = false, isTrying_ = false;
-    std::vector<size_t> trials_;  // still to come, last first
-    std::vector<double> trialMs_;
-    int framesTried_ = 0;
+    static constexpr double kUnknown = -1;
+
+    CoherentStrategy culling_;  // coh and hzb
+    std::unique_ptr<Strategy> frustum_;
+    Choice current_ = kCoh, before_ = kCoh;
+    bool hasBegun_ = false, isTrying_ = false, wasSameView_ = false;
+    bool hasQueries_ = false, hasPyramid_ = false;
+    std::array<std::vector<double>, 3> times_;  // of this look, by choice
+    std::array<double, 3> costMs_ = {kUnknown, kUnknown, kUnknown};
     uint64_t framesSinceLook_ = 0, rest_ = kFirstRest;
     double drawnTriangles_ = 0, trianglesAtChoice_ = 0, msPerTriangle_ = 0;
     std::string why_;

@@ -9,6 +9,8 @@ namespace pagoda::hlod {
 namespace {
 
 constexpr uint32_t kNoParent = UINT32_MAX;
+// Hidden for so long, it will probably be hidden in the next frame too.
+constexpr uint8_t kLongHiddenFrames = 4;
 
 // The relative visibility mu.
 double shareOf(uint64_t visiblePx, double outlinePx) {
@@ -37,6 +39,8 @@ void CoherentStrategy::traverse(FrameContext& frame) {
     mayCoarsen_ = rules_.options.isAsPublished || !frame.isSameView || frame.tauPx > lastTauPx_;
     lastTauPx_ = frame.tauPx;
     visits_.clear();
+    gathered_.clear();
+    askedGathered_ = 0;
     const auto root = frame.tree.root();
     if (!root) return;
     memory_.fit(frame.tree);
@@ -44,7 +48,9 @@ void CoherentStrategy::traverse(FrameContext& frame) {
     familyOf_ = kNoParent;
     push(*root, kNoParent, 0);
     const bool doesPoll = counting_ != nullptr && counting_->isPollFree();
-    while (!queue_.empty() || !pending_.empty()) {
+    while (!queue_.empty() || !pending_.empty() || askedGathered_ < gathered_.size()) {
+        // The last of all: behind as much as can be, and with as many as there are.
+        if (queue_.empty() && pending_.empty()) askGathered();
         takeAnswers(doesPoll);
         if (!queue_.empty()) visit(pop());
     }
@@ -62,7 +68,18 @@ void CoherentStrategy::takeAnswers(bool doesPoll) {
             visiblePx = counting_->wait(oldest.ticket);
         }
         pending_.pop_front();
-        answer(oldest.visit, *visiblePx);
+        if (oldest.together == 0) {
+            answer(oldest.visit, *visiblePx);
+            continue;
+        }
+        for (uint32_t i = 0; i < oldest.together; ++i) {
+            const uint32_t index = gathered_[oldest.visit + i];
+            if (*visiblePx == 0) {
+                answer(index, 0);
+            } else {
+                ask(index);
+            }
+        }
     }
 }
 
@@ -135,6 +152,7 @@ void CoherentStrategy::visit(uint32_t index) {
     Memory& memory = *visit.memory;
     memory.wasRefined = memory.isRefined && wasVisitedBefore(memory);
     memory.isRefined = memory.isVisible = false;
+    if (!wasVisitedBefore(memory)) memory.hiddenFrames = 0;
     memory.isStop = visit.prediction != Prediction::Refine;
     memory.visitedFrame = frameNumber_;
     if (NodeWatch* const watch = watchOf(visit)) {
@@ -154,7 +172,46 @@ void CoherentStrategy::visit(uint32_t index) {
         return;
     }
     ++(visit.prediction == Prediction::Stop ? counts.stop : counts.delay);
-    ask(index);
+    if (isTrusted(visit)) return trust(index);
+    if (!isGathered(visit)) return ask(index);
+    gathered_.push_back(index);
+    if (gathered_.size() - askedGathered_ >= rules_.options.hiddenBatch) askGathered();
+}
+
+bool CoherentStrategy::isTrusted(const Visit& visit) const {
+    const uint32_t every = rules_.options.retestEvery;
+    if (every <= 1 || visit.prediction != Prediction::Stop || frame_->isSameView) return false;
+    const auto ownTime = static_cast<uint32_t>(cache::PageIdHash{}(visit.node.page()) >> 32);
+    return (ownTime + frameNumber_) % every != 0;
+}
+
+void CoherentStrategy::trust(uint32_t index) {
+    Visit& visit = visits_[index];
+    visit.visiblePx =
+        static_cast<uint64_t>(visit.memory->bias * boxPixels(frame_->view, *visit.node.boxModel));
+    markVisible(index);
+    emit(index);
+}
+
+bool CoherentStrategy::isGathered(const Visit& visit) const {
+    // A still view comes to rest: nothing changes in it because something was hidden for long.
+    return rules_.options.hiddenBatch > 1 && !frame_->isSameView && !rules_.usesPyramid &&
+           !rules_.doesWaitAtOnce && visit.prediction == Prediction::Delay &&
+           visit.memory->hiddenFrames >= kLongHiddenFrames;
+}
+
+void CoherentStrategy::askGathered() {
+    const auto begin = static_cast<uint32_t>(askedGathered_);
+    const auto count = static_cast<uint32_t>(gathered_.size()) - begin;
+    askedGathered_ = gathered_.size();
+    if (count == 0) return;
+    if (count == 1) return ask(gathered_[begin]);
+    std::vector<Box3d> boxes;
+    boxes.reserve(count);
+    for (uint32_t i = 0; i < count; ++i) {
+        boxes.push_back(*visits_[gathered_[begin + i]].node.boxModel);
+    }
+    pending_.push_back({begin, counting_->query(boxes), count});
 }
 
 void CoherentStrategy::ask(uint32_t index) {
@@ -256,7 +313,7 @@ bool CoherentStrategy::mayRise(const Visit& visit, const NodeRange& children) {
         if (!memory.isStop || !(child.isLeaf() || isChildFine)) return false;
         biasSum += memory.bias;
     }
-    return count > 0 && isFine(visit, biasSum / count);
+    return count > 0 && isFine(visit, biasSum / count * (1.0 + rules_.options.hysteresis));
 }
 
 // A box that reaches the eye's side of the near plane is visible, whatever a query would say.
@@ -282,6 +339,7 @@ void CoherentStrategy::answer(uint32_t index, uint64_t visiblePx) {
         noteAnswer(*watch, visiblePx, boxPixels(frame_->view, *visit.node.boxModel), false);
     }
     if (visiblePx == 0) {
+        if (memory.hiddenFrames < UINT8_MAX) ++memory.hiddenFrames;
         ++(wasStop ? counts.stopHidden : counts.delayHidden);
         if (!wasStop && visit.probeLevel == 0) frame_->sink.hide(visit.node);
         return;
@@ -319,6 +377,7 @@ void CoherentStrategy::markVisible(uint32_t index) {
         Memory& memory = *visits_[index].memory;
         if (memory.isVisible) return;
         memory.isVisible = true;
+        memory.hiddenFrames = 0;
     }
 }
 
@@ -337,6 +396,7 @@ void CoherentStrategy::draw(uint32_t index) {
     if (visit.probeLevel > 0) return;
     if (state != cache::PageState::Resident) return standInFor(index);
     visit.isDrawn = true;
+    frame_->record.risenNodes += visit.memory->wasRefined;
     frame_->sink.draw(visit.node, Use::Cut);
 }
 

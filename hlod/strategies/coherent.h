@@ -39,6 +39,8 @@ public:
     void traverse(FrameContext& frame) override;
     void forget() override;
     [[nodiscard]] bool learnsWhatIsHidden() const override { return true; }
+    // From the next frame on; what was learnt stays.
+    void usePyramid(bool doesUse) { rules_.usesPyramid = doesUse; }
 
 private:
     enum class Prediction : uint8_t { Refine, Stop, Delay };
@@ -46,6 +48,7 @@ private:
     struct Memory {
         double bias = 1.0;
         uint32_t visitedFrame = 0;  // of this strategy
+        uint8_t hiddenFrames = 0;   // in a row, up to its last visit; 255: or more
         bool isVisible : 1 = false;
         bool isStop : 1 = false;
         bool isDoubted : 1 = false;   // a late answer saw nothing of it, whatever the pyramid says
@@ -70,8 +73,9 @@ private:
         uint32_t visit = 0;
     };
     struct Asked {
-        uint32_t visit = 0;
+        uint32_t visit = 0;  // or the first in gathered_ of those that were asked together
         QueryTicket ticket;
+        uint32_t together = 0;  // 0: one
     };
 
     void push(const Node& node, uint32_t parent, uint32_t probeLevel);
@@ -88,6 +92,10 @@ private:
     }
     void takeAnswers(bool doesPoll);
     void ask(uint32_t index);
+    [[nodiscard]] bool isTrusted(const Visit& visit) const;
+    void trust(uint32_t index);
+    [[nodiscard]] bool isGathered(const Visit& visit) const;
+    void askGathered();
     void answer(uint32_t index, uint64_t visiblePx);
     void seeUnasked(uint32_t index);
     void markVisible(uint32_t index);
@@ -124,8 +132,10 @@ private:
     bool mayCoarsen_ = true;  // in this frame
     double lastTauPx_ = 0.0;
     std::vector<Visit> visits_;
-    std::vector<Queued> queue_;  // a heap, nearest first
-    std::deque<Asked> pending_;  // oldest first
+    std::vector<Queued> queue_;       // a heap, nearest first
+    std::deque<Asked> pending_;       // oldest first
+    std::vector<uint32_t> gathered_;  // visits that are asked about together
+    size_t askedGathered_ = 0;        // the first so many of them were
     // Looked up for the prediction, used again by what follows from it.
     uint32_t familyOf_ = 0;
     NodeRange family_;

@@ -20,6 +20,16 @@ struct StrategyOptions {
     // its answer (delay), since it would often turn out wrong and be drawn in vain (RARN). 0 is
     // the paper's.
     double caution = 0.15;
+    // Beyond the paper: a stop that was seen is asked about in every so many frames only, each at
+    // its own time, and in a still view; in between it counts as seen, as before. 1: in every
+    // frame.
+    uint32_t retestEvery = 1;
+    // Beyond the paper: so many boxes that were hidden for some frames are asked about together;
+    // only when anything is seen, each by itself. 1: each. Of queries only, not of a depth pyramid.
+    uint32_t hiddenBatch = 1;
+    // Beyond the paper: a node takes the place of its children only when its error is less than tau
+    // by this share, so that it does not come and go. 0: at tau.
+    double hysteresis = 0.0;
     // The traversal as it was published: without the rules that let a still view come to rest.
     bool isAsPublished = false;
 };

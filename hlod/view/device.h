@@ -17,6 +17,9 @@ public:
     // Draws the opaque part of a node whose page is uploaded. Draws may be gathered until an answer
     // depends on them.
     virtual void draw(const Node& node) = 0;
+    // Does it draw on the CPUs that everything else runs on? Then CPU time tells what a frame
+    // costs.
+    [[nodiscard]] virtual bool drawsOnCpu() const { return false; }
     // Count, or test, against what was drawn so far; null where the device has none.
     [[nodiscard]] virtual CountingVisibility* counting() = 0;
     [[nodiscard]] virtual PyramidVisibility* pyramid() = 0;

@@ -43,6 +43,7 @@ std::string frameRecordToJson(const FrameRecord& record) {
         {"queries", record.queries},
         {"delayed", record.delayedNodes},
         {"rarn", record.rarnNodes},
+        {"risen", record.risenNodes},
         {"waits", record.waits},
         {"predictions",
          {{"refine", predictions.refine},

@@ -37,6 +37,7 @@ struct FrameRecord {
     uint64_t queries = 0;
     uint64_t delayedNodes = 0;  // drawn after their answer had come (strategy)
     uint64_t rarnNodes = 0;     // rendered already, refinement needed in the same frame (strategy)
+    uint64_t risenNodes = 0;    // drawn in place of the children of the frame before (strategy)
     uint64_t waits = 0;         // times that an answer was waited for (strategy)
     PredictionCounts predictions;  // (strategy)
     uint64_t coveredPixels = 0;    // not background; counted when the picture is read

@@ -129,6 +129,17 @@ FrameRunner::Progress FrameRunner::progress() {
             counters.uploadedPages, streaming_.index().loadedBlocks()};
 }
 
+void FrameRunner::forget(Strategy& strategy) {
+    strategy.forget();
+    late_.abandonAll();
+}
+
+double FrameRunner::lastCostMs() const {
+    if (!lastRecord_) return 0.0;
+    return (device_.drawsOnCpu() ? lastRecord_->cpuMs : lastRecord_->frameMs) +
+           lastRecord_->simulatedStallMs;
+}
+
 FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
                              const FrameOptions& options) {
     const double beginMs = nowMs(), beginCpuMs = processCpuMs();
@@ -144,7 +155,7 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
         wantRoot(*root);
     }
     const View view(camera, sceneBox_, options.clip);
-    if (lastClip_.hidden != options.clip.hidden) strategy.forget();
+    if (lastClip_.hidden != options.clip.hidden) forget(strategy);
     record.streamMs = nowMs() - beginMs;
 
     const double traverseBeginMs = nowMs();
@@ -160,6 +171,7 @@ FrameRecord FrameRunner::run(const Camera& camera, Strategy& strategy,
                        lastRecord_ ? &*lastRecord_ : nullptr,
                        isSameView(camera, options),
                        options.probeLevels,
+                       lastCostMs(),
                        options.watch};
     if (doesPrefetch_) prefetcher_.beginFrame(record.frameIndex, tree_);
     strategy.traverse(frame);
@@ -284,7 +296,11 @@ FrameRecord FrameRunner::settle(const Camera& camera, Strategy& strategy,
         if (record.isSettled && hasLooked) break;
         if (record.isSettled) probeLevels = options.probeLevels;
         // Nothing on its way: either the next frame asks for more, or tau control must act.
-        if (record.missingPages > 0) static_cast<void>(streaming_.waitForArrival());
+        // What was sent for is read whatever the next frame wants, so that one waits for all of it.
+        if (record.missingPages > 0) {
+            while (streaming_.waitForArrival() && streaming_.requests().sentCount() > 0) {
+            }
+        }
         const bool isComplete = record.missingPages == 0 && !tauControl_.isMoving();
         completeFrames = isComplete ? completeFrames + 1 : 0;
     }

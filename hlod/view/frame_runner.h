@@ -38,6 +38,10 @@ public:
     FrameRecord settle(const Camera& camera, Strategy& strategy, const FrameOptions& options,
                        const std::function<void(const FrameRecord&)>& onFrame = {});
 
+    // The strategy forgets, and what it asked here is not answered any more: before it is done away
+    // with, or when what it learnt is no longer true.
+    void forget(Strategy& strategy);
+
     // Reads ahead along the camera's motion (prefetch.h). Off at first.
     void setPrefetch(bool isOn) { doesPrefetch_ = isOn; }
     [[nodiscard]] Prefetcher& prefetcher() noexcept { return prefetcher_; }
@@ -59,6 +63,7 @@ private:
         [[nodiscard]] bool operator==(const Progress&) const = default;
     };
     [[nodiscard]] Progress progress();
+    [[nodiscard]] double lastCostMs() const;
     void wantRoot(const Node& root);
     [[nodiscard]] bool isSameView(const Camera& camera, const FrameOptions& options) const {
         return lastCamera_ == camera && lastClip_ == options.clip;

@@ -26,6 +26,11 @@ std::optional<uint64_t> LateVisibility::poll(QueryTicket ticket) {
     return inner_->wait(ticket);
 }
 
+void LateVisibility::abandonAll() {
+    asked_.clear();
+    if (inner_ != nullptr) inner_->abandonAll();
+}
+
 uint64_t LateVisibility::wait(QueryTicket ticket) {
     if (latencyFrames_ > 0) {
         const auto found = asked_.find(ticket.value);

@@ -22,6 +22,7 @@ public:
     [[nodiscard]] std::optional<uint64_t> poll(QueryTicket ticket) override;
     [[nodiscard]] uint64_t wait(QueryTicket ticket) override;
 
+    void abandonAll() override;
     [[nodiscard]] bool isPollFree() const override {
         return inner_ != nullptr && inner_->isPollFree();
     }

@@ -144,7 +144,10 @@ private:
             return found->second.get();
         }
         auto& kept = blocks_[number];
-        if (number >= source_.blockCount()) return nullptr;
+        if (number >= source_.blockCount()) {
+            result_.faults.push_back(fmt::format("index block {}: there is no such block", number));
+            return nullptr;
+        }
         const cache::ByteRange range = source_.blockRange(number);
         std::vector<std::byte> bytes(range.bytes);
         std::string fault = source_.read(range.offset, bytes);

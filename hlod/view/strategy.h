@@ -57,6 +57,8 @@ struct FrameContext {
     // How far below a stand-in absent nodes are asked for. All the way is soonest sharp; one level
     // reads least, since what is nearer hides more of what is behind it than its stand-in does.
     uint32_t probeLevels = UINT32_MAX;
+    // What the frame before cost: its time, or CPU time where the CPU draws, and simulated stalls.
+    double lastCostMs = 0.0;
     NodeWatch* watch = nullptr;  // null: no node is asked about
 };
 

@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <variant>
+#include <vector>
 
 namespace pagoda::hlod {
 
@@ -20,8 +21,9 @@ struct OrientedBox {
     glm::dmat3 axes{1.0};
 };
 
-// What is tested: a box (axis-aligned or oriented), or a resident node's own mesh (paper 000).
-using QueryShape = std::variant<Box3d, OrientedBox, Node>;
+// What is tested: a box (axis-aligned or oriented), a resident node's own mesh (paper 000), or
+// boxes together: their pixels added up, those in front of each other too.
+using QueryShape = std::variant<Box3d, OrientedBox, Node, std::vector<Box3d>>;
 
 struct QueryTicket {
     uint64_t value = 0;
@@ -39,6 +41,8 @@ public:
     [[nodiscard]] virtual std::optional<uint64_t> poll(QueryTicket ticket) = 0;
     // The answer, now.
     [[nodiscard]] virtual uint64_t wait(QueryTicket ticket) = 0;
+    // All tickets that were not answered yet are void: nobody will ask about them.
+    virtual void abandonAll() {}
     // Is poll() free? Where it makes the device begin what it would rather gather, it is not.
     [[nodiscard]] virtual bool isPollFree() const { return false; }
 };

@@ -51,7 +51,10 @@ bool ObjectReader::update() {
         searchedShare_ = *arrived.searchedShare;
         isSearching_ = searchedShare_ < 1.0;
     }
-    if (arrived.box) visibleBox_ = *arrived.box;
+    if (arrived.box) {
+        visibleBox_ = *arrived.box;
+        isBoxPending_ = false;
+    }
     return !arrived.parents.empty() || !arrived.records.empty() || arrived.searchedShare ||
            arrived.box || !arrived.faults.empty();
 }
@@ -98,6 +101,7 @@ void ObjectReader::search(const std::string& text) {
 
 void ObjectReader::wantVisibleBox(std::shared_ptr<const ObjectSet> hidden) {
     visibleBox_.reset();
+    isBoxPending_ = hidden && !hidden->isEmpty();
     {
         const std::lock_guard lock(workMutex_);
         ++boxNumber_;
@@ -144,15 +148,21 @@ ObjectReader::Block ObjectReader::read(std::unique_lock<std::mutex>& lock, uint3
         return lastBlocks_.back().second;
     }
     lock.unlock();
-    auto loaded = database_.readObjectBlock(block);
     Block records;
-    if (loaded.value) {
-        records = std::make_shared<const std::vector<ObjectRecord>>(std::move(*loaded.value));
+    std::string fault;
+    try {
+        auto loaded = database_.readObjectBlock(block);
+        fault = loaded.fault;
+        if (loaded.value) {
+            records = std::make_shared<const std::vector<ObjectRecord>>(std::move(*loaded.value));
+        }
+    } catch (const std::exception& error) {  // memory may be short
+        fault = error.what();
     }
     lock.lock();
     if (!records && !isFaultTold_[block]) {
         isFaultTold_[block] = true;
-        arrivals_.faults.push_back("object block " + std::to_string(block) + ": " + loaded.fault);
+        arrivals_.faults.push_back("object block " + std::to_string(block) + ": " + fault);
     }
     if (lastBlocks_.size() == kKeptBlocks) lastBlocks_.erase(lastBlocks_.begin());
     lastBlocks_.emplace_back(block, records);

@@ -64,6 +64,9 @@ public:
     // Nothing until it is known.
     [[nodiscard]] const std::optional<Box3d>& visibleBox() const noexcept { return visibleBox_; }
 
+    // Is the box that was asked for still on its way? Afterwards, without one, it cannot be known.
+    [[nodiscard]] bool isBoxPending() const noexcept { return isBoxPending_; }
+
     [[nodiscard]] uint64_t objectCount() const noexcept { return objectCount_; }
     [[nodiscard]] const std::vector<std::string>& faults() const noexcept { return faults_; }
 
@@ -110,6 +113,7 @@ private:
     bool isSearching_ = false;
     double searchedShare_ = 0.0;
     std::optional<Box3d> visibleBox_;
+    bool isBoxPending_ = false;
     std::vector<std::string> faults_;
 
     std::mutex workMutex_;  // guards the members below but the thread

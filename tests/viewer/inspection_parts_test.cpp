@@ -115,7 +115,10 @@ TEST(ExactPick, AnswersTheLastRayAlone) {
     beside.direction = Vec3d(-1, 0, 0);
     at.direction = Vec3d(1, 1e-3, 0);
     for (int i = 0; i < 20; ++i) {
-        isThere = false;
+        {
+            const std::lock_guard lock(mutex);
+            isThere = false;
+        }
         pick.ask(beside);
         pick.ask(at);
         std::optional<hlod::LeafRayResult> answer;

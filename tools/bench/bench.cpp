@@ -31,6 +31,7 @@ void addTimed(BenchRun& run, const hlod::FrameRecord& record) {
     add(run.queries, record.queries);
     add(run.rarn, record.rarnNodes);
     add(run.delayed, record.delayedNodes);
+    add(run.risen, record.risenNodes);
     add(run.waits, record.waits);
     add(run.visitedNodes, record.visitedNodes);
     add(run.hiddenNodes, record.hiddenNodes);
@@ -45,9 +46,10 @@ void addTimed(BenchRun& run, const hlod::FrameRecord& record) {
 
 void divide(BenchRun& run) {
     const auto timed = static_cast<double>(std::max<size_t>(run.frameMsSeries.size(), 1));
-    for (double* sum : {&run.drawnNodes, &run.drawnTriangles, &run.queries, &run.rarn, &run.delayed,
-                        &run.waits, &run.visitedNodes, &run.hiddenNodes, &run.missingPages,
-                        &run.effectiveTauPx, &run.stopHidden, &run.delayHidden, &run.stallMs}) {
+    for (double* sum :
+         {&run.drawnNodes, &run.drawnTriangles, &run.queries, &run.rarn, &run.delayed, &run.risen,
+          &run.waits, &run.visitedNodes, &run.hiddenNodes, &run.missingPages, &run.effectiveTauPx,
+          &run.stopHidden, &run.delayHidden, &run.stallMs}) {
         *sum /= timed;
     }
     const auto truth = static_cast<double>(std::max<size_t>(run.truthFrames, 1));
@@ -65,6 +67,7 @@ struct NodeHash {
         return cache::PageIdHash{}(cache::PageId{0, node});
     }
 };
+using NodeSet = std::unordered_set<ooc::NodeId, NodeHash>;
 using PageBytes = std::unordered_map<ooc::NodeId, uint32_t, NodeHash>;
 
 struct Parts {
@@ -93,7 +96,10 @@ public:
         addFaults(pass.referenceFaults);
         run_.live = std::move(pass);
     }
-    void setStill(const StillPass& pass) { run_.still = pass; }
+    void setStill(StillPass pass) {
+        addFaults(pass.faults);
+        run_.still = std::move(pass);
+    }
 
     // Each once.
     void addFaults(const std::vector<std::string>& faults) {
@@ -113,7 +119,8 @@ public:
         std::vector<bool> isSeen(picture.nodes.size() + 1, false);
         for (const uint32_t ordinal : picture.nodeOrdinals) isSeen[ordinal] = true;
         for (size_t i = 0; i < picture.nodes.size(); ++i) {
-            if (isSeen[i + 1]) addExact(picture.nodes[i]);
+            addWithAncestors(drawn_, picture.nodes[i]);
+            if (isSeen[i + 1]) addWithAncestors(exact_, picture.nodes[i]);
         }
     }
 
@@ -123,6 +130,7 @@ public:
         run_.bytesRead = counters.bytesRead - counters.blockBytesRead;
         run_.pageBytesRead = renderer_.runner().streaming().residency().counters().bytesRead;
         for (const ooc::NodeId node : exact_) run_.bytesExact += pageBytes.at(node);
+        for (const ooc::NodeId node : drawn_) run_.bytesDrawn += pageBytes.at(node);
     }
 
     // Everything down to the cut at tau; what does not fit is missing later, and counted.
@@ -206,8 +214,8 @@ private:
         options.queryLatencyFrames = configuration.queryLatencyFrames;
         return options;
     }
-    void addExact(ooc::NodeId node) {
-        while (exact_.insert(node).second && node != ooc::NodeId::root()) node = node.parent();
+    static void addWithAncestors(NodeSet& nodes, ooc::NodeId node) {
+        while (nodes.insert(node).second && node != ooc::NodeId::root()) node = node.parent();
     }
     void notePeaks(const hlod::FrameRecord& record) {
         run_.gpuBytesPeak = std::max(run_.gpuBytesPeak, record.gpuBytes);
@@ -217,7 +225,7 @@ private:
     std::unique_ptr<hlod::Strategy> strategy_;
     BenchRun run_;
     Parts parts_;
-    std::unordered_set<ooc::NodeId, NodeHash> exact_;
+    NodeSet exact_, drawn_;
 };
 
 PageBytes pageBytesOf(const ooc::Database& database) {

@@ -79,7 +79,8 @@ struct StillPass {
     size_t frames = 0;  // each held against the one before
     uint64_t coveredPixels = 0;
     CoarserPixels coarser;
-    uint64_t coarserFrames = 0;  // with any without an allowed cause
+    uint64_t coarserFrames = 0;       // with any without an allowed cause
+    std::vector<std::string> faults;  // what could not be read
 };
 
 // Means over the frames that were looked at.
@@ -92,6 +93,7 @@ struct BenchRun {
     int repeats = 0;
     // From the timed pass, a frame.
     double drawnNodes = 0, drawnTriangles = 0, queries = 0, rarn = 0, delayed = 0, waits = 0;
+    double risen = 0;
     double visitedNodes = 0, hiddenNodes = 0, missingPages = 0, effectiveTauPx = 0;
     double stopHidden = 0, delayHidden = 0, stallMs = 0;
     Spread frameMs, cpuMs, traverseMs, queryMs, drawMs, streamMs;
@@ -111,6 +113,7 @@ struct BenchRun {
     uint64_t bytesRead = 0;      // with what joined reads bring along
     uint64_t pageBytesRead = 0;  // without
     uint64_t bytesExact = 0;     // pages with a pixel, and their ancestors
+    uint64_t bytesDrawn = 0;     // pages drawn in a settled frame, and their ancestors
     uint64_t unsettledFrames = 0;
     uint64_t gpuBytesPeak = 0, hostBytesPeak = 0;
     LivePass live;    // without frames when the disk is as it is

@@ -65,6 +65,7 @@ Json toJson(const BenchRun& run) {
         {"queries", shown(run.queries)},
         {"rarn", shown(run.rarn)},
         {"delayed", shown(run.delayed)},
+        {"risen", shown(run.risen)},
         {"waits", shown(run.waits)},
         {"visited_nodes", shown(run.visitedNodes)},
         {"hidden_nodes", shown(run.hiddenNodes)},
@@ -98,6 +99,7 @@ Json toJson(const BenchRun& run) {
     json["bytes_read"] = run.bytesRead;
     json["page_bytes_read"] = run.pageBytesRead;
     json["bytes_exact"] = run.bytesExact;
+    json["bytes_drawn"] = run.bytesDrawn;
     json["unsettled_frames"] = run.unsettledFrames;
     json["gpu_bytes_peak"] = run.gpuBytesPeak;
     json["host_bytes_peak"] = run.hostBytesPeak;

@@ -50,7 +50,10 @@ template <typename Plan>
             {"settings",
              {{"bias", {options.biasS, options.biasT, options.biasFloor}},
               {"as_published", options.isAsPublished},
-              {"caution", options.caution}}}};
+              {"caution", options.caution},
+              {"retest", options.retestEvery},
+              {"batch_hidden", options.hiddenBatch},
+              {"hysteresis", options.hysteresis}}}};
 }
 // Rounded to six digits: more is noise, and reports get committed.
 [[nodiscard]] double shown(double value);

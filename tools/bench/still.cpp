@@ -57,6 +57,7 @@ private:
         for (size_t i = 0; i < count; ++i) {
             step();
             hlod::FrameRecord still = renderer_.renderLive(camera, *strategy_, look_);
+            pass_.faults = still.faults;  // all so far
             DrawnPicture now = readDrawn(renderer_, still);
             const CoarserPixels coarser = countCoarser(before, now);
             ++pass_.frames;

@@ -52,6 +52,7 @@ std::vector<std::string> Scene::faults() const {
 hlod::Strategy& Scene::strategyFor(const ViewSettings& settings) {
     if (frozen_) return *frozen_;
     if (!strategy_ || strategyName_ != settings.strategy) {
+        if (strategy_) renderer_->runner().forget(*strategy_);
         strategy_ = hlod::makeStrategy(settings.strategy, settings.strategyOptions);
         strategyName_ = settings.strategy;
     }
@@ -81,7 +82,9 @@ void Scene::setTint(const ViewSettings& settings) {
         tintOf(settings.colouring, record_.effectiveTauPx > 0 ? record_.effectiveTauPx : 1.0));
     renderer_->device().setWireframe(settings.isWireframe);
     // Lines hide nothing: what was learnt from surfaces is wrong for them, and the other way round.
-    if (isWireframe_ != settings.isWireframe && strategy_) strategy_->forget();
+    if (isWireframe_ != settings.isWireframe && strategy_) {
+        renderer_->runner().forget(*strategy_);
+    }
     isWireframe_ = settings.isWireframe;
 }
 

@@ -52,23 +52,28 @@ TEST(StrategyPictures, SettledBoolShowsWhatFrustumShowsWithEverythingResident) {
     EXPECT_LT(tied, 60u);
 }
 
-struct Setup {
+struct Case {
     const char* strategy;
     uint32_t latencyFrames;
+    const char* options = "";
+    StrategyOptions strategyOptions{};
 };
-std::string nameOf(const testing::TestParamInfo<Setup>& info) {
-    return std::string(info.param.strategy) + "At" + std::to_string(info.param.latencyFrames);
+// Not every frame asks about all, and not about each box by itself.
+constexpr StrategyOptions kSparing{.retestEvery = 4, .hiddenBatch = 4, .hysteresis = 0.2};
+std::string nameOf(const testing::TestParamInfo<Case>& info) {
+    return std::string(info.param.options) + info.param.strategy + "At" +
+           std::to_string(info.param.latencyFrames);
 }
 
-class CullingAtLatency : public testing::TestWithParam<Setup> {};
+class CullingAtLatency : public testing::TestWithParam<Case> {};
 
 // A page that is absent has a stand-in, so the first frames count too.
 TEST_P(CullingAtLatency, ChangesNoPixelOfItsOwnCutAlongAMovingPath) {
-    const auto [name, latency] = GetParam();
-    Rig rig(rooms(),
-            {.disk = cache::parseDiskProfile("20MB/s,20ms"), .queryLatencyFrames = latency});
+    const Case& tried = GetParam();
+    Rig rig(rooms(), {.disk = cache::parseDiskProfile("20MB/s,20ms"),
+                      .queryLatencyFrames = tried.latencyFrames});
     Rig truth(rooms());
-    const auto strategy = makeStrategy(name);
+    const auto strategy = makeStrategy(tried.strategy, tried.strategyOptions);
     uint64_t hiddenNodes = 0, same = 0;
     for (int i = 0; i < 90; ++i) {
         const Camera camera = viewOf(i, 90, false);
@@ -83,24 +88,25 @@ TEST_P(CullingAtLatency, ChangesNoPixelOfItsOwnCutAlongAMovingPath) {
     EXPECT_GT(same, 90u * 64 * 48 / 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(, CullingAtLatency,
-                         testing::Values(Setup{"bool", 0}, Setup{"bool", 1}, Setup{"bool", 2},
-                                         Setup{"bool", 4}, Setup{"sw", 0}, Setup{"sw", 1},
-                                         Setup{"sw", 2}, Setup{"sw", 4}, Setup{"coh", 0},
-                                         Setup{"coh", 1}, Setup{"coh", 2}, Setup{"coh", 4},
-                                         Setup{"hzb", 0}, Setup{"hzb", 1}, Setup{"hzb", 2},
-                                         Setup{"hzb", 4}, Setup{"late", 0}, Setup{"late", 1},
-                                         Setup{"late", 2}, Setup{"late", 4}),
-                         nameOf);
+INSTANTIATE_TEST_SUITE_P(
+    , CullingAtLatency,
+    testing::Values(Case{"bool", 0}, Case{"bool", 1}, Case{"bool", 2}, Case{"bool", 4},
+                    Case{"sw", 0}, Case{"sw", 1}, Case{"sw", 2}, Case{"sw", 4}, Case{"coh", 0},
+                    Case{"coh", 1}, Case{"coh", 2}, Case{"coh", 4}, Case{"hzb", 0}, Case{"hzb", 1},
+                    Case{"hzb", 2}, Case{"hzb", 4}, Case{"late", 0}, Case{"late", 1},
+                    Case{"late", 2}, Case{"late", 4}, Case{"auto", 0}, Case{"auto", 2},
+                    Case{"coh", 0, "Sparing", kSparing}, Case{"coh", 2, "Sparing", kSparing},
+                    Case{"bool", 1, "Sparing", kSparing}, Case{"late", 1, "Sparing", kSparing}),
+    nameOf);
 
-class StillView : public testing::TestWithParam<Setup> {};
+class StillView : public testing::TestWithParam<Case> {};
 
 TEST_P(StillView, ComesToRestAndReadsNoPageTwice) {
-    const auto [name, latency] = GetParam();
+    const Case& tried = GetParam();
     for (const bool isPollFree : {false, true}) {
-        Rig rig(rooms(), {.queryLatencyFrames = latency});
+        Rig rig(rooms(), {.queryLatencyFrames = tried.latencyFrames});
         rig.device.setCounting(true, isPollFree);
-        const auto strategy = makeStrategy(name);
+        const auto strategy = makeStrategy(tried.strategy, tried.strategyOptions);
         for (int i = 0; i < 60; ++i) {
             const Camera camera = viewOf(i, 60, i % 2 == 1);
             ASSERT_TRUE(rig.settle(camera, *strategy, 1.0).isSettled) << i;
@@ -119,9 +125,13 @@ TEST_P(StillView, ComesToRestAndReadsNoPageTwice) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, StillView,
-                         testing::Values(Setup{"frustum", 0}, Setup{"bool", 0}, Setup{"bool", 2},
-                                         Setup{"sw", 0}, Setup{"coh", 0}, Setup{"coh", 2},
-                                         Setup{"hzb", 0}, Setup{"late", 0}, Setup{"late", 2}),
+                         testing::Values(Case{"frustum", 0}, Case{"bool", 0}, Case{"bool", 2},
+                                         Case{"sw", 0}, Case{"coh", 0}, Case{"coh", 2},
+                                         Case{"hzb", 0}, Case{"late", 0}, Case{"late", 2},
+                                         Case{"auto", 0}, Case{"auto", 2},
+                                         Case{"coh", 0, "Sparing", kSparing},
+                                         Case{"coh", 2, "Sparing", kSparing},
+                                         Case{"bool", 0, "Sparing", kSparing}),
                          nameOf);
 
 }  // namespace

@@ -22,7 +22,8 @@ struct Answer {
 };
 
 using Answers = std::function<Answer(ooc::NodeId)>;
-using Events = std::vector<std::string>;  // "query A", "wait A", "draw A", "refine A", "hide A"
+using Events = std::vector<std::string>;  // "query A", "wait A", "draw A", "refine A", "hide A";
+                                          // "query A+B" of boxes together
 
 inline Box3d boxModelOf(const MadeRecords& records, size_t node) {
     return records.lattice.toModel(records.nodes()[node].box);
@@ -39,13 +40,15 @@ public:
         }
     }
 
-    FrameRecord run(Strategy& strategy, const View& view, double tauPx, Answers answers) {
+    FrameRecord run(Strategy& strategy, const View& view, double tauPx, Answers answers,
+                    const std::function<void(FrameContext&)>& change = {}) {
         answers_ = std::move(answers);
         asked_.clear();
         events_.clear();
         tree_.beginFrame();
         FrameRecord record;
         FrameContext frame{view, tree_.tree(), tauPx, tree_.frameIndex(), *this, record};
+        if (change) change(frame);
         strategy.traverse(frame);
         return record;
     }
@@ -60,39 +63,55 @@ public:
     }
     void hide(const Node& node) override { note("hide", node.record->id); }
     CountingVisibility* counting() override { return this; }
-    PyramidVisibility* pyramid() override { return nullptr; }
+    PyramidVisibility* pyramid() override { return depths; }
+    PyramidVisibility* depths = nullptr;
 
     QueryTicket query(const QueryShape& shape) override {
-        const ooc::NodeId node = byBox_.at(keyOf(std::get<Box3d>(shape)));
-        note("query", node);
-        asked_.push_back({node, 0});
+        Asked asked;
+        if (const auto* const together = std::get_if<std::vector<Box3d>>(&shape)) {
+            for (const Box3d& box : *together) asked.nodes.push_back(byBox_.at(keyOf(box)));
+        } else {
+            asked.nodes.push_back(byBox_.at(keyOf(std::get<Box3d>(shape))));
+        }
+        note("query", asked.nodes);
+        asked_.push_back(std::move(asked));
         return {asked_.size() - 1};
     }
     std::optional<uint64_t> poll(QueryTicket ticket) override {
         Asked& asked = asked_.at(ticket.value);
-        const Answer answer = answers_(asked.node);
-        const bool isReady =
-            answer.readyAtPoll != Answer::kOnlyByWaiting && asked.polls++ >= answer.readyAtPoll;
-        return isReady ? std::optional(answer.visiblePx) : std::nullopt;
+        const int readyAtPoll = answers_(asked.nodes.front()).readyAtPoll;
+        const bool isReady = readyAtPoll != Answer::kOnlyByWaiting && asked.polls++ >= readyAtPoll;
+        return isReady ? std::optional(visiblePx(asked)) : std::nullopt;
     }
     uint64_t wait(QueryTicket ticket) override {
-        const ooc::NodeId node = asked_.at(ticket.value).node;
-        note("wait", node);
-        return answers_(node).visiblePx;
+        const Asked& asked = asked_.at(ticket.value);
+        note("wait", asked.nodes);
+        return visiblePx(asked);
     }
     bool isPollFree() const override { return true; }
 
 private:
     struct Asked {
-        ooc::NodeId node;
-        int polls;
+        std::vector<ooc::NodeId> nodes;
+        int polls = 0;
     };
+    uint64_t visiblePx(const Asked& asked) const {
+        uint64_t pixels = 0;
+        for (const ooc::NodeId node : asked.nodes) pixels += answers_(node).visiblePx;
+        return pixels;
+    }
     using BoxKey = std::array<double, 6>;
     static BoxKey keyOf(const Box3d& box) {
         return {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
     }
-    void note(const char* what, ooc::NodeId node) {
-        events_.push_back(std::string(what) + ' ' + nameOf_(node));
+    void note(const char* what, ooc::NodeId node) { note(what, std::vector{node}); }
+    void note(const char* what, const std::vector<ooc::NodeId>& nodes) {
+        std::string names;
+        for (const ooc::NodeId node : nodes) {
+            if (!names.empty()) names += '+';
+            names += nameOf_(node);
+        }
+        events_.push_back(std::string(what) + ' ' + names);
     }
 
     MadeTree tree_;
