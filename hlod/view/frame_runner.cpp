@@ -296,9 +296,13 @@ FrameRecord FrameRunner::settle(const Camera& camera, Strategy& strategy,
         if (record.isSettled && hasLooked) break;
         if (record.isSettled) probeLevels = options.probeLevels;
         // Nothing on its way: either the next frame asks for more, or tau control must act.
-        // What was sent for is read whatever the next frame wants, so that one waits for all of it.
         if (record.missingPages > 0) {
-            while (streaming_.waitForArrival() && streaming_.requests().sentCount() > 0) {
+            bool isMoreToCome = streaming_.waitForArrival();
+            // What was sent for is read whatever the next frame wants: who learns from frames, and
+            // would cancel no more of it, waits for all.
+            while (isMoreToCome && strategy.learnsWhatIsHidden() &&
+                   streaming_.requests().sentCount() > 0) {
+                isMoreToCome = streaming_.waitForArrival();
             }
         }
         const bool isComplete = record.missingPages == 0 && !tauControl_.isMoving();

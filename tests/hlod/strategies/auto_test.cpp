@@ -106,7 +106,7 @@ TEST_F(AutoTest, LooksAgainAndChangesItsMind) {
 
 TEST_F(AutoTest, AStillViewKeepsWhatDrewIt) {
     const std::map<std::string, double> costs = {{"coh", 10}, {"hzb", 5}, {"frustum", 7}};
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < 20; ++i) {
         const std::string name = frame(costs);
         for (int still = 0; still < 5; ++still) EXPECT_EQ(frame(costs, true), name) << i;
     }
