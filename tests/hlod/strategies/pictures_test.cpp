@@ -90,7 +90,8 @@ INSTANTIATE_TEST_SUITE_P(, CullingAtLatency,
                                          Setup{"coh", 1}, Setup{"coh", 2}, Setup{"coh", 4},
                                          Setup{"hzb", 0}, Setup{"hzb", 1}, Setup{"hzb", 2},
                                          Setup{"hzb", 4}, Setup{"late", 0}, Setup{"late", 1},
-                                         Setup{"late", 2}, Setup{"late", 4}),
+                                         Setup{"late", 2}, Setup{"late", 4}, Setup{"slabs", 0},
+                                         Setup{"slabs", 1}, Setup{"slabs", 2}, Setup{"slabs", 4}),
                          nameOf);
 
 class StillView : public testing::TestWithParam<Setup> {};
@@ -121,7 +122,8 @@ TEST_P(StillView, ComesToRestAndReadsNoPageTwice) {
 INSTANTIATE_TEST_SUITE_P(, StillView,
                          testing::Values(Setup{"frustum", 0}, Setup{"bool", 0}, Setup{"bool", 2},
                                          Setup{"sw", 0}, Setup{"coh", 0}, Setup{"coh", 2},
-                                         Setup{"hzb", 0}, Setup{"late", 0}, Setup{"late", 2}),
+                                         Setup{"hzb", 0}, Setup{"late", 0}, Setup{"late", 2},
+                                         Setup{"slabs", 0}, Setup{"slabs", 2}),
                          nameOf);
 
 }  // namespace
