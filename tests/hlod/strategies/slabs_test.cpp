@@ -329,6 +329,37 @@ TEST_P(SlabsPictures, SettleOverPagesThatFail) {
     EXPECT_GT(standIns, 12u);
 }
 
+// A closed room: all that is to be had lies in the cells that its walls meet.
+TEST(Slabs, WhatLiesInHiddenCellsOnlyIsNeverRead) {
+    const RoomScene closed(RoomScene::Options{.doorShare = 0.0});
+    Rig rig(closed);
+    const auto slabs = makeStrategy("slabs");
+    const Vec3d eye = closed.roomCentre(2, 2);
+    for (int i = 0; i < 40; ++i) {
+        Camera camera = closed.walk(0, 1);
+        camera.eye = eye;
+        camera.target = eye + Vec3d(std::cos(0.16 * i), std::sin(0.16 * i), -0.1);
+        ASSERT_TRUE(rig.settle(camera, *slabs, 0.0).isSettled);
+    }
+    const Box3d scene = closed.lattice.toModel(closed.record(ooc::NodeId::root()).box);
+    const Vec3d size = scene.max - scene.min;
+    const double cell = std::max(size.x, size.y) / SlabsOptions{}.resolution;
+    const double room = closed.roomCentre(3, 2).x - eye.x;
+    const Vec3d reach(0.5 * room + cell, 0.5 * room + cell, size.z);
+    size_t leaves = 0, leavesRead = 0;
+    for (const ooc::IndexBlock& block : closed.blocks) {
+        for (const ooc::NodeRecord& record : block.nodes) {
+            if (!record.isLeaf()) continue;
+            ++leaves;
+            if (!rig.loads.pages.contains(record.id)) continue;
+            ++leavesRead;
+            EXPECT_TRUE(overlaps(closed.lattice.toModel(record.box), {eye - reach, eye + reach}));
+        }
+    }
+    EXPECT_GT(leavesRead, 10u);
+    EXPECT_LT(4 * leavesRead, leaves);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     , SlabsPictures,
     testing::Values(Kind{"uniform", {}}, Kind{"coarse", {.resolution = 6, .batch = 3}},
