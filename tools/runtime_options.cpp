@@ -10,9 +10,10 @@
 namespace pagoda::tools {
 
 hlod::StrategyOptions RuntimeOptions::strategyOptions() const {
-    hlod::StrategyOptions options;
-    options.caution = caution;
-    if (bias == "paper") options = hlod::kPaperOptions;
+    hlod::StrategyOptions options = bias == "paper" ? hlod::kPaperOptions : hlod::StrategyOptions{};
+    options.slabs = slabs;
+    options.slabs.isNested = slabsGrid == "nested";
+    if (bias != "paper") options.caution = caution;
     options.retestEvery = retestEvery;
     options.hiddenBatch = hiddenBatch;
     options.hysteresis = hysteresis;
@@ -72,6 +73,48 @@ std::vector<std::string> strategyNames() {
     for (const hlod::StrategyRow& row : hlod::strategies()) names.emplace_back(row.name);
     return names;
 }
+
+void addDetailOption(CLI::App& command, RuntimeOptions& options) {
+    command
+        .add_option("--detail", options.detail,
+                    "lod: what --tau allows; full: the leaves, as --tau 0")
+        ->check(CLI::IsMember({"lod", "full"}))
+        ->capture_default_str();
+}
+
+namespace {
+
+void addSlabsOptions(CLI::App& command, RuntimeOptions& options) {
+    command.add_option("--slabs-grid", options.slabsGrid, "slabs: uniform or nested grid")
+        ->check(CLI::IsMember({"uniform", "nested"}))
+        ->capture_default_str();
+    command
+        .add_option("--slabs-resolution", options.slabs.resolution,
+                    "slabs, uniform: cells along the scene's longest side")
+        ->check(CLI::Range(1, 512))
+        ->capture_default_str();
+    command
+        .add_option("--slabs-branching", options.slabs.branching,
+                    "slabs, nested: cells of each grid along an axis")
+        ->check(CLI::Range(2, 16))
+        ->capture_default_str();
+    command
+        .add_option("--slabs-split", options.slabs.splitTriangles,
+                    "slabs, nested: triangles above which a visible cell is cut")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    command
+        .add_option("--slabs-batch", options.slabs.batch,
+                    "slabs: queries that go out before an answer is waited for")
+        ->check(CLI::Range(size_t{1}, size_t{1'000'000}))
+        ->capture_default_str();
+    command
+        .add_option("--slabs-threshold", options.slabs.queryTriangles,
+                    "slabs: a cell that would draw fewer triangles is drawn unasked")
+        ->capture_default_str();
+}
+
+}  // namespace
 
 void addRuntimeOptions(CLI::App& command, RuntimeOptions& options) {
     const auto isPrefetch = [](const std::string& text) -> std::string {
@@ -142,6 +185,7 @@ void addRuntimeOptions(CLI::App& command, RuntimeOptions& options) {
         .add_option("--disk", options.disk,
                     "Simulated disk: as-is, or parts such as 100MB/s,10ms,fail=1%,short=5%")
         ->capture_default_str();
+    addSlabsOptions(command, options);
 }
 
 }  // namespace pagoda::tools

@@ -15,6 +15,8 @@ constexpr std::array kStrategies = {
                 true},
     StrategyRow{"late", "as coh for late answers: hidden by the pyramid, errors by old queries",
                 &makeLateStrategy, true},
+    StrategyRow{"slabs", "front to back in slabs of a grid's cells, batched queries",
+                &makeSlabsStrategy},
     StrategyRow{"auto", "whichever of coh, hzb and frustum pays here", &makeAutoStrategy},
 };
 

@@ -9,6 +9,17 @@
 
 namespace pagoda::hlod {
 
+// Of `slabs` (paper 003).
+struct SlabsOptions {
+    bool isNested = false;          // grids within cells; else one uniform grid
+    int resolution = 40;            // uniform: cells along the scene's longest side, 1 to 512
+    int branching = 4;              // nested: cells of each grid along an axis, 2 to 16
+    double splitTriangles = 10000;  // nested: a visible cell with more is cut
+    size_t batch = 64;              // queries before an answer is waited for, 1 or more
+    // A cell that would draw less is drawn unasked.
+    uint64_t queryTriangles = 1;
+};
+
 struct StrategyOptions {
     // The sigmoid bias (paper 004): s blends linear (0) and sigmoid (1), t is its turnover: smaller
     // keeps more detail. Both in [0, 1]. The paper's are s = 1, t = 0.5.
@@ -32,6 +43,7 @@ struct StrategyOptions {
     double hysteresis = 0.0;
     // The traversal as it was published: without the rules that let a still view come to rest.
     bool isAsPublished = false;
+    SlabsOptions slabs{};
 };
 
 // Biases that the paper states, and nothing beyond it.
@@ -58,6 +70,7 @@ struct StrategyRow {
 [[nodiscard]] std::unique_ptr<Strategy> makeCohStrategy(const StrategyOptions& options);
 [[nodiscard]] std::unique_ptr<Strategy> makeHzbStrategy(const StrategyOptions& options);
 [[nodiscard]] std::unique_ptr<Strategy> makeLateStrategy(const StrategyOptions& options);
+[[nodiscard]] std::unique_ptr<Strategy> makeSlabsStrategy(const StrategyOptions& options);
 [[nodiscard]] std::unique_ptr<Strategy> makeAutoStrategy(const StrategyOptions& options);
 
 }  // namespace pagoda::hlod

@@ -67,8 +67,8 @@ Episode makeEpisode(Random& random, const RoomScene& scene, const test::SoakDevi
                                           "2MB/s,10ms",      "500MB/s,40ms",
                                           "300MB/s,fail=1%", "1MB/s,20ms,fail=10%",
                                           "5MB/s,short=20%"};
-    static constexpr std::array kStrategies = {"frustum", "bool", "sw",  "simp",
-                                               "coh",     "hzb",  "late"};
+    static constexpr std::array kStrategies = {"frustum", "bool", "sw",   "simp",
+                                               "coh",     "hzb",  "late", "slabs"};
     Episode episode;
     episode.strategy = kStrategies[static_cast<size_t>(random.whole(0, kStrategies.size() - 1))];
     episode.tauPx = random.whole(0, 9) == 0 ? 0.0 : random.log(0.3, 8.0);

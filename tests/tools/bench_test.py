@@ -18,7 +18,7 @@ import program
 from page import Page
 
 PAGODA = program.Program(sys.argv[1])
-STRATEGIES = ["frustum", "bool", "sw", "simp", "coh", "hzb", "late"]
+STRATEGIES = ["frustum", "bool", "sw", "simp", "coh", "hzb", "late", "slabs"]
 FRAMES, REPEATS, TAUS, STILL_EVERY = 4, 2, [2, 32], 3
 MEANS = ["drawn_nodes", "drawn_triangles", "queries", "rarn", "delayed", "wrong_pixels",
          "covered_pixels", "psnr_luma", "reference_id_differences", "psnr_luma_reference"]

@@ -112,7 +112,7 @@ void expectNoWrongPixel(const char* name, const RendererOptions& options) {
 }
 
 TEST_F(StrategiesTest, NoPixelIsWrongAtAnyLatency) {
-    for (const char* name : {"bool", "sw", "coh", "hzb", "late"}) {
+    for (const char* name : {"bool", "sw", "coh", "hzb", "late", "slabs"}) {
         for (const uint32_t latency : {0u, 1u, 2u, 4u}) {
             SCOPED_TRACE(name + (" at latency " + std::to_string(latency)));
             expectNoWrongPixel(name, {.queryLatencyFrames = latency});

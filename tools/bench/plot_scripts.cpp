@@ -27,7 +27,7 @@ struct Look {
 constexpr Look kLooks[] = {
     {"frustum", "#000000", 1, 5}, {"bool", "#e69f00", 1, 7}, {"sw", "#56b4e9", 4, 9},
     {"simp", "#009e73", 2, 11},   {"coh", "#d55e00", 1, 13}, {"hzb", "#cc79a7", 5, 15},
-    {"late", "#8c564b", 5, 9},    {"auto", "#0072b2", 3, 3},
+    {"late", "#8c564b", 5, 9},    {"auto", "#0072b2", 3, 3}, {"slabs", "#7f7f00", 4, 1},
 };
 constexpr Look kOther{"", "#888888", 3, 1};
 

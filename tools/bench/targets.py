@@ -13,7 +13,7 @@ from pathlib import Path
 DEEP = ["plant-walk", "interior-walk"]
 CENTRE = DEEP + ["lego-show-a-walk"]
 INSIDE = CENTRE + ["hospital-walk", "clinic-walk", "city-walk"]
-CONSERVATIVE = {"bool", "sw", "coh", "hzb", "late"}
+CONSERVATIVE = {"bool", "sw", "coh", "hzb", "late", "slabs"}
 
 
 class Folder:

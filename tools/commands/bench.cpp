@@ -58,10 +58,12 @@ hlod::CameraPath readPath(const Arguments& arguments, const std::string& file) {
 }
 
 void addConfigurations(Arguments& arguments) {
+    const bool isFull = arguments.plan.runtime.detail == "full";
+    const std::vector<double> taus = isFull ? std::vector{0.0} : arguments.taus;
     for (const std::string& file : arguments.paths) {
         const hlod::CameraPath path = readPath(arguments, file);
         for (const std::string& size : arguments.sizes) {
-            for (const double tauPx : arguments.taus) {
+            for (const double tauPx : taus) {
                 for (const uint32_t latency : arguments.latencies) {
                     BenchConfiguration configuration;
                     configuration.pathName = std::filesystem::path(file).stem().string();
@@ -192,6 +194,7 @@ void addBenchCommand(CLI::App& app, Session& session) {
         ->delimiter(',')
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
+    addDetailOption(*command, arguments->plan.runtime);
     command->add_option("--size", arguments->sizes, "Pictures in pixels, WxH")
         ->delimiter(',')
         ->capture_default_str();

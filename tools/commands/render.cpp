@@ -37,7 +37,7 @@ struct Arguments {
     std::string database, output;
     std::string camera, view = "iso", size, up;
     double fovyDegrees = 0;
-    std::string detail, depth, ids, background;
+    std::string depth, ids, background;
     RuntimeOptions runtime;
     bool isReference = false, wantsStats = false;
 };
@@ -91,7 +91,7 @@ hlod::Camera makeCamera(const Arguments& arguments, const Box3d& box, hlod::UpAx
 hlod::FrameRecord draw(viewer::Renderer& renderer, const Arguments& arguments,
                        const hlod::Camera& camera, hlod::UpAxis up, Progress& progress) {
     viewer::RenderOptions options;
-    options.tauPx = arguments.detail == "full" ? 0.0 : arguments.runtime.tauPx;
+    options.tauPx = arguments.runtime.effectiveTauPx();
     options.background = parseBackground(arguments.background);
     options.worldUp = Vec3f(hlod::upVector(up));
     if (arguments.isReference) {
@@ -167,8 +167,7 @@ void addDetailOptions(CLI::App& command, Arguments& arguments) {
                     "Error allowed on the screen, pixels; 0: every leaf")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
-    command.add_option("--detail", arguments.detail, "full: as --tau 0")
-        ->check(CLI::IsMember({"full"}));
+    addDetailOption(command, arguments.runtime);
     command.add_option("--strategy", arguments.runtime.strategy, "How the cut is found")
         ->check(CLI::IsMember(strategyNames()))
         ->capture_default_str();

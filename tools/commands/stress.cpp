@@ -146,6 +146,7 @@ void addPlanOptions(CLI::App& command, Arguments& arguments) {
     command.add_option("--tau", plan.runtime.tauPx, "Allowed error on the screen, pixels")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
+    addDetailOption(command, plan.runtime);
     command.add_flag("!--no-resident", plan.hasResident,
                      "Leave the cells out that have all in memory");
     command.add_option("--up", arguments.up, "Up axis (default: the database's)")
@@ -173,6 +174,7 @@ void addStressCommand(CLI::App& app, Session& session) {
                         "100MB/s,10ms,fail=1%,short=5% (default: six of them)");
     command->callback([arguments, command, &session] {
         arguments->plan.command = commandText(*command, {});
+        arguments->plan.runtime.tauPx = arguments->plan.runtime.effectiveTauPx();
         stress(*arguments, session);
     });
 }

@@ -110,7 +110,8 @@ TEST_P(StillViewWithHistory, OnlyStandInsMakeAnythingCoarser) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(, StillViewWithHistory, testing::Values("sw", "coh", "hzb", "late"));
+INSTANTIATE_TEST_SUITE_P(, StillViewWithHistory,
+                         testing::Values("sw", "coh", "hzb", "late", "slabs"));
 
 // Hears what is asked about boxes, and the answers.
 class SpyingVisibility final : public CountingVisibility, public PyramidVisibility {
@@ -206,7 +207,8 @@ TEST_P(OnDemand, WhatNeverProvesVisibleIsNeverRead) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, SlowDisk,
-                         testing::Values("frustum", "bool", "sw", "simp", "coh", "hzb", "late"));
+                         testing::Values("frustum", "bool", "sw", "simp", "coh", "hzb", "late",
+                                         "slabs"));
 INSTANTIATE_TEST_SUITE_P(, OnDemand, testing::Values("bool", "sw", "simp", "coh", "hzb", "late"));
 
 }  // namespace

@@ -105,7 +105,8 @@ TEST_P(ClipTest, AnotherClipIsAnotherView) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Strategies, ClipTest,
-                         testing::Values("frustum", "bool", "sw", "simp", "coh", "hzb", "late"));
+                         testing::Values("frustum", "bool", "sw", "simp", "coh", "hzb", "late",
+                                         "slabs"));
 
 }  // namespace
 }  // namespace pagoda::hlod

@@ -103,7 +103,7 @@ TEST_P(TightBudget, SurvivesATeleportEveryFrameWithoutHoles) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, TightBudget,
-                         testing::Values("frustum", "bool", "sw", "coh", "hzb", "late"));
+                         testing::Values("frustum", "bool", "sw", "coh", "hzb", "late", "slabs"));
 
 }  // namespace
 }  // namespace pagoda::hlod

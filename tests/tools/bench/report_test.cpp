@@ -150,7 +150,8 @@ TEST(PlotScripts, LongPathsAreThinnedToMeans) {
 
 TEST(PlotLegend, StaysInsideTheFigure) {
     std::vector<LegendEntry> entries;
-    for (const char* name : {"frustum", "bool", "sw", "simp", "coh", "hzb", "late", "auto"}) {
+    for (const char* name :
+         {"frustum", "bool", "sw", "simp", "coh", "hzb", "late", "slabs", "auto"}) {
         entries.push_back({name, "#000000", LegendEntry::Mark::Line, 1});
     }
     const std::string commands = legendCommands(entries, kFigureWidthPx);
