@@ -10,7 +10,7 @@ void ObjectVisibility::want(Wish wish) {
 
 void ObjectVisibility::showAll() {
     waiting_.clear();
-    hasChanged_ = hidden_ != nullptr;
+    hasChanged_ = hasChanged_ || hidden_ != nullptr;
     hidden_.reset();
     objects_.wantVisibleBox(nullptr);
     isBoxKnown_ = true;

@@ -35,8 +35,10 @@ Inspection::News Inspection::update() {
 
 void Inspection::pickAt(glm::dvec2 px) {
     const std::optional<Pick> last = pick_;
+    lastExactModel_.reset();
     if (exact_) lastExactModel_ = exact_->hit.pointModel;
     exact_.reset();
+    faultsWithoutHit_.clear();
     isPathWanted_ = false;
     pick_ = scene_.pick(px);
     if (last && pick_) {
@@ -59,7 +61,11 @@ void Inspection::dismissPick() {
 void Inspection::takeHit(const hlod::LeafRayResult& result) {
     isReadingLeaves_ = false;
     exact_.reset();
-    if (!result.isHit) return;
+    faultsWithoutHit_.clear();
+    if (!result.isHit) {
+        faultsWithoutHit_ = result.faults;
+        return;
+    }
     exact_ = ExactHit{.hit = result.hit,
                       .distanceModelUnits = result.hit.along,  // the ray is 1 along the view
                       .faults = result.faults,

@@ -42,6 +42,10 @@ public:
     [[nodiscard]] const std::optional<Pick>& pick() const noexcept { return pick_; }
     // Nothing while leaves are read, and where the ray meets nothing.
     [[nodiscard]] const std::optional<ExactHit>& exact() const noexcept { return exact_; }
+    // Of a click whose ray met nothing: leaves that could not be read.
+    [[nodiscard]] const std::vector<std::string>& faultsWithoutHit() const noexcept {
+        return faultsWithoutHit_;
+    }
     [[nodiscard]] bool isReadingLeaves() const noexcept { return isReadingLeaves_; }
     [[nodiscard]] bool hasAsked() const noexcept { return pick_ || exact_ || isReadingLeaves_; }
 
@@ -60,6 +64,7 @@ private:
     std::optional<Pick> pick_;
     std::optional<ExactHit> exact_;
     std::optional<Vec3d> lastExactModel_;
+    std::vector<std::string> faultsWithoutHit_;
     bool isReadingLeaves_ = false, isPathWanted_ = false;
 };
 

@@ -136,6 +136,10 @@ void objectText(const Inspection& inspection) {
         ImGui::TextColored(kAccent, "%s",
                            inspection.isReadingLeaves() ? "reading the leaves ..."
                                                         : "nothing here at full resolution");
+        const std::vector<std::string>& faults = inspection.faultsWithoutHit();
+        if (!faults.empty()) {
+            ImGui::TextColored(kAlarm, "not all could be read: %s", faults.front().c_str());
+        }
         return;
     }
     const std::vector<std::string>& path = exact->path;

@@ -55,7 +55,7 @@ ViewApp::ViewApp(GlfwWindow& window, const ViewOptions& options, ModelOpener& op
     if (opening) {
         beginOpening(options.model, std::move(opening));
     } else if (!options.model.empty()) {
-        openDatabase(options.model, options.model.stem().string());
+        openDatabase(options.model, options.model.stem().string(), false);
     }
 }
 
@@ -133,8 +133,9 @@ bool ViewApp::drawScene() {
     const glm::ivec2 size = window_.framebufferPx();
     if (size.x < 1 || size.y < 1) return false;  // minimised
     if (preview_) {
-        if (isSceneDirty_) drawPreview();
-        return std::exchange(isSceneDirty_, false);
+        const bool isDirty = std::exchange(isSceneDirty_, false);  // also when it cannot be drawn
+        if (isDirty) drawPreview();
+        return isDirty;
     }
     if (!isSceneDirty_ && scene_->isSettled()) return false;
     const bool isRestless = !isSceneDirty_ && !scene_->isWaitingForPages();

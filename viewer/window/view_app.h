@@ -65,7 +65,8 @@ private:
 
     // view_opening.cpp
     void open(const std::filesystem::path& model);
-    void openDatabase(const std::filesystem::path& path, const std::string& name);
+    // `isOpening`: what the opening has made, whose preview may be on the screen.
+    void openDatabase(const std::filesystem::path& path, const std::string& name, bool isOpening);
     void beginOpening(const std::filesystem::path& model, std::unique_ptr<Opening> opening);
     void abandonOpening();
     void followOpening();

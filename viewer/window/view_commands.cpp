@@ -336,7 +336,7 @@ void ViewApp::guarded(const std::function<void()>& work) {
 
 void ViewApp::say(const std::string& text, bool isError) {
     constexpr size_t kMaxMessages = 4;
-    std::erase_if(messages_, [&](const Message& m) { return !m.isError || m.text == text; });
+    std::erase_if(messages_, [&](const Message& message) { return message.text == text; });
     if (messages_.size() == kMaxMessages) messages_.erase(messages_.begin());
     messages_.push_back({text, isError, nowSeconds() + kMessageSeconds});
     uiFrames_ = kUiFrames;

@@ -46,7 +46,10 @@ void ViewApp::takeNews() {
 
 void ViewApp::logExact() {
     const std::optional<ExactHit>& exact = inspection_->exact();
-    if (!exact) return log_.write("exact", {{"point", nullptr}});
+    if (!exact) {
+        return log_.write("exact",
+                          {{"point", nullptr}, {"faults", inspection_->faultsWithoutHit()}});
+    }
     const Vec3d& p = exact->hit.pointModel;
     nlohmann::json line = {{"point", {p.x, p.y, p.z}},
                            {"leaf", fmt::format("0x{:x}", exact->hit.leaf.value)},

@@ -28,14 +28,14 @@ void ViewApp::open(const std::filesystem::path& model) {
         beginOpening(model, std::move(opening));
         return;
     }
-    isPreviewOfOpening_ = false;
-    openDatabase(model, model.stem().string());
+    openDatabase(model, model.stem().string(), false);
 }
 
-void ViewApp::openDatabase(const std::filesystem::path& path, const std::string& name) {
+void ViewApp::openDatabase(const std::filesystem::path& path, const std::string& name,
+                           bool isOpening) {
     auto scene = std::make_unique<Scene>(path, name, settings_.runtime);
-    if (!isPreviewOfOpening_)
-        navigation_.reset();  // another model; of its preview the camera stays
+    // Another model; of its preview the camera stays.
+    if (!isOpening || !isPreviewOfOpening_) navigation_.reset();
     isPreviewOfOpening_ = false;
     forgetScene();
     scene_ = std::move(scene);  // only now: what cannot be opened leaves the old one
@@ -143,16 +143,17 @@ void ViewApp::endOpening() {
             log_.write("made", {{"file", openingModel_.string()},
                                 {"database", opening->database().string()},
                                 {"is_built", opening->isBuilt()}});
-            return guarded([&] { openDatabase(opening->database(), name); });
+            return guarded([&] { openDatabase(opening->database(), name, true); });
     }
 }
 
 void ViewApp::showPreview(const Preview& preview) {
     if (!isPreviewOfOpening_) {
+        auto scene = std::make_unique<PreviewScene>(opening_->name());  // may throw
         isPreviewOfOpening_ = true;
         navigation_.reset();  // another model
         forgetScene();
-        preview_ = std::make_unique<PreviewScene>(opening_->name());
+        preview_ = std::move(scene);
     }
     preview_->show(preview);
     lookAt(preview.box, preview.up);
