@@ -117,7 +117,8 @@ ModelCache::ModelCache(Options options) : options_(std::move(options)) {
 
 std::optional<ModelCache::Stamp> ModelCache::stampOf(const fs::path& path) {
     struct stat status {};
-    if (::stat(path.c_str(), &status) != 0) return std::nullopt;
+    // Folders cannot be read, and opening a pipe would wait for ever: as if there were nothing.
+    if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
     return Stamp{.sizeBytes = static_cast<uint64_t>(status.st_size),
                  .inode = static_cast<uint64_t>(status.st_ino),
                  .modifiedNs = nanoseconds(status.st_mtim),
@@ -176,10 +177,13 @@ uint64_t ModelCache::hashOf(const Source& source, Progress* progress) const {
 
 std::string ModelCache::keyOf(const std::vector<hlod::InputSpec>& inputs) const {
     std::string text = options_.settings + "\n";
+    const fs::path folder = fs::absolute(inputs.front().path).parent_path();
     for (size_t i = 0; i < inputs.size(); ++i) {
-        // Its name is that of an object when there are several; its ending says how it is read.
-        const fs::path name =
-            inputs.size() > 1 ? inputs[i].path.filename() : inputs[i].path.extension();
+        // Of several, their names are those of objects, and where they lie says whose companions
+        // are whose. The ending says how a file is read.
+        const fs::path name = inputs.size() > 1
+                                  ? fs::absolute(inputs[i].path).lexically_relative(folder)
+                                  : inputs[i].path.extension();
         text += fmt::format("{} {:016x} {} {}\n", sources_[i].stamp.sizeBytes, sources_[i].hash,
                             name.string(), placementText(inputs[i]));
     }
@@ -273,11 +277,25 @@ fs::path ModelCache::buildTarget() const {
 
 fs::path ModelCache::take(const std::vector<fs::path>& companions,
                           std::vector<std::string>& notes) {
-    std::error_code code;
-    const auto refuse = [&](const fs::path& changed) {
-        fs::remove(buildTarget(), code);
+    try {
+        return moveIn(companions, notes);
+    } catch (...) {
+        std::error_code code;
+        fs::remove(buildTarget(), code);  // a whole database that nothing would ever count
+        throw;
+    }
+}
+
+fs::path ModelCache::moveIn(const std::vector<fs::path>& companions,
+                            std::vector<std::string>& notes) {
+    const auto refuse = [](const fs::path& changed) {
         throw Error(changed.string(), "", "has changed while it was read", "open it again");
     };
+    // What was made of other companions goes first: beside the new entry it would seem current.
+    const fs::path database = databaseOf(key_);
+    std::error_code code;
+    fs::remove(database, code);
+    writeEntry(companions);
     for (const Source& source : sources_) {
         if (stampOf(source.path) != source.stamp) refuse(source.path);
     }
@@ -285,8 +303,6 @@ fs::path ModelCache::take(const std::vector<fs::path>& companions,
         const auto stamp = stampOf(companion);
         if (stamp && stamp->changedNs > foundNs_) refuse(companion);
     }
-    writeEntry(companions);
-    const fs::path database = databaseOf(key_);
     fs::rename(buildTarget(), database, code);
     // Another process that built the same may have moved it just now.
     if (code && !fs::is_regular_file(database)) {
@@ -304,7 +320,11 @@ void ModelCache::writeEntry(const std::vector<fs::path>& companions) const {
         const fs::path path = fs::absolute(companion).lexically_normal();
         const auto stamp = stampOf(path);
         json& hash = named[path.lexically_relative(folder.lexically_normal()).string()];
-        if (stamp) hash = hashOf({.path = path, .stamp = *stamp}, nullptr);
+        if (!stamp) continue;
+        Source source{.path = path, .stamp = *stamp};
+        source.hash = hashOf(source, nullptr);
+        remember(source);
+        hash = source.hash;
     }
     const fs::path entry = options_.folder / (key_ + ".json");
     if (!writeJson(entry, {{"model", fs::absolute(sources_.front().path).string()},
@@ -341,8 +361,9 @@ void ModelCache::trim(std::vector<std::string>& notes) const {
         fs::path described = entry.database;
         described.replace_extension(".json");
         const auto made = readJson(described);
-        const std::string model = made ? made->value("model", std::string("?")) : std::string("?");
-        fs::remove(entry.database, code);
+        const bool hasName = made && made->contains("model") && (*made)["model"].is_string();
+        const std::string model = hasName ? (*made)["model"].get<std::string>() : "?";
+        if (!fs::remove(entry.database, code)) continue;
         fs::remove(described, code);
         total -= entry.bytes;
         notes.push_back(fmt::format("cache above {}: removed what was made of {} ({})",

@@ -80,6 +80,8 @@ private:
     [[nodiscard]] std::filesystem::path databaseOf(const std::string& key) const;
     [[nodiscard]] std::optional<std::filesystem::path> lookUp();
     [[nodiscard]] bool areCompanionsSame(const nlohmann::json& made) const;
+    [[nodiscard]] std::filesystem::path moveIn(const std::vector<std::filesystem::path>& companions,
+                                               std::vector<std::string>& notes);
     void writeEntry(const std::vector<std::filesystem::path>& companions) const;
     void trim(std::vector<std::string>& notes) const;
     void removeAbandoned() const;

@@ -158,6 +158,50 @@ TEST(ModelCache, AMaterialFileThatChangesWhileItIsBuiltLeavesNothing) {
     EXPECT_FALSE(fs::exists(cache.buildTarget()));
 }
 
+TEST(ModelCache, AFolderAmongTheCompanionsIsAsIfItWereNotThere) {
+    Rig rig;
+    write(rig.folder / "a.obj", quad(0.5));
+    fs::create_directories(rig.folder / "a.mtl");
+    const fs::path first = rig.open(rig.folder / "a.obj");
+    EXPECT_EQ(rig.open(rig.folder / "a.obj"), first);
+    EXPECT_EQ(rig.builds, 1);
+}
+
+TEST(ModelCache, AnEntryThatCannotBeWrittenLeavesNeitherTheNewNorTheOldDatabase) {
+    Rig rig;
+    const fs::path model = rig.folder / "a.obj", material = rig.folder / "a.mtl";
+    write(model, quad(0.5));
+    write(material, "newmtl m\nKd 1 0 0\n");
+    const fs::path database = rig.open(model);
+    write(material, "newmtl m\nKd 0 1 0\n");
+    fs::path entry = database;
+    entry.replace_extension(".json");
+    fs::remove(entry);
+    write(entry / "in the way", "");  // a folder, not empty
+    EXPECT_THROW(rig.open(model), Error);
+    EXPECT_FALSE(fs::exists(database));
+    EXPECT_TRUE(fs::is_empty(rig.options.folder / "building"));
+    fs::remove_all(entry);
+    EXPECT_EQ(rig.open(model), database);
+    EXPECT_EQ(rig.builds, 3);
+}
+
+TEST(ModelCache, OfSeveralFilesItCountsWhereTheyLie) {
+    Rig rig;
+    for (const char* folder : {"A", "B", "C"}) write(rig.folder / folder / "a.obj", quad(0.5));
+    write(rig.folder / "B" / "a.mtl", "newmtl m\nKd 1 0 0\n");
+    write(rig.folder / "C" / "a.mtl", "newmtl m\nKd 0 1 0\n");
+    const auto keyOf = [&](const char* second) {
+        ModelCache cache(rig.options);
+        const auto inputs = hlod::expandInputs(
+            {(rig.folder / "A" / "a.obj").string(), (rig.folder / second / "a.obj").string()});
+        (void)cache.find(inputs, rig.progress);
+        return cache.buildTarget();
+    };
+    EXPECT_NE(keyOf("B"), keyOf("C"));
+    EXPECT_EQ(keyOf("B"), keyOf("B"));
+}
+
 TEST(ModelCache, ADamagedDatabaseIsMadeAnew) {
     Rig rig;
     const fs::path model = rig.folder / "a.obj";
