@@ -10,7 +10,8 @@ namespace pagoda::tools {
 namespace {
 
 // CSS pixels; letters of 13 px Helvetica are 6.5 wide on average, some more.
-constexpr double kMarkPx = 24, kGapPx = 6, kLetterPx = 6.9, kBetweenPx = 20;
+constexpr double kMarkPx = 24, kGapPx = 6, kLetterPx = 6.9;
+constexpr double kMostBetweenPx = 20, kEdgePx = 12;
 
 double widthPx(const LegendEntry& entry) {
     return kMarkPx + kGapPx + kLetterPx * static_cast<double>(entry.name.size());
@@ -42,15 +43,20 @@ std::string markCommand(const LegendEntry& entry, double left, double right, dou
 std::string legendCommands(const std::vector<LegendEntry>& entries, int figureWidthPx,
                            double height) {
     const double figure = figureWidthPx;
-    double total = -kBetweenPx;
-    for (const LegendEntry& entry : entries) total += widthPx(entry) + kBetweenPx;
-    double x = std::max(4.0, 0.54 * figure - 0.5 * total);
+    double total = 0;
+    for (const LegendEntry& entry : entries) total += widthPx(entry);
+    // Many entries stand closer together.
+    const double gaps = entries.size() > 1 ? static_cast<double>(entries.size() - 1) : 1.0;
+    const double betweenPx = std::min(kMostBetweenPx, (figure - 2 * kEdgePx - total) / gaps);
+    total += betweenPx * gaps;
+    double x = std::clamp(0.54 * figure - 0.5 * total, kEdgePx,
+                          std::max(kEdgePx, figure - kEdgePx - total));
     std::string commands = "unset key\n";
     for (const LegendEntry& entry : entries) {
         commands += markCommand(entry, x / figure, (x + kMarkPx) / figure, height);
         commands += fmt::format("set label {} at screen {:.4f},{} left\n",
                                 gnuplotQuoted(entry.name), (x + kMarkPx + kGapPx) / figure, height);
-        x += widthPx(entry) + kBetweenPx;
+        x += widthPx(entry) + betweenPx;
     }
     return commands;
 }
