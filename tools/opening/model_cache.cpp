@@ -292,7 +292,7 @@ fs::path ModelCache::moveIn(const std::vector<fs::path>& companions,
         throw Error(changed.string(), "", "has changed while it was read", "open it again");
     };
     // What was made of other companions goes first: beside the new entry it would seem current.
-    const fs::path database = databaseOf(key_);
+    fs::path database = databaseOf(key_);
     std::error_code code;
     fs::remove(database, code);
     writeEntry(companions);
