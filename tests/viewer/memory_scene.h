@@ -43,12 +43,12 @@ public:
     }
 
     // A leaf holds at most `leafTriangles`, or its cell is a single lattice cell.
-    static MemoryScene make(const ooc::Lattice& lattice, std::vector<Triangle> triangles,
+    static MemoryScene make(const ooc::Lattice& lattice, const std::vector<Triangle>& triangles,
                             size_t leafTriangles) {
         MemoryScene scene;
         scene.lattice = lattice;
         scene.block.nodes.resize(1);
-        scene.fillNode(0, ooc::NodeId::root(), Vec3i(0), lattice.extentBits, std::move(triangles),
+        scene.fillNode(0, ooc::NodeId::root(), Vec3i(0), lattice.extentBits, triangles,
                        leafTriangles);
         return scene;
     }
@@ -161,7 +161,7 @@ private:
             Vec3i corner = cell;
             for (int axis = 0; axis < 3; ++axis)
                 corner[axis] += ((octant >> axis) & 1u) != 0 ? half : 0;
-            fillNode(next, id.child(octant), corner, bits - 1, std::move(part), leafTriangles);
+            fillNode(next, id.child(octant), corner, bits - 1, part, leafTriangles);
             box.extend(block.nodes[next++].box);
         }
     }

@@ -56,7 +56,7 @@ protected:
             });
         hasLast_ = true;
         last_.drawnTriangles = 400;
-        const std::string name = last_.choice.substr(0, last_.choice.find(':'));
+        std::string name = last_.choice.substr(0, last_.choice.find(':'));
         lastCostMs_ = costMs.at(name);
         return name;
     }
@@ -82,6 +82,7 @@ TEST_F(AutoTest, TriesQueriesAndPyramidInTurnsAndKeepsTheCheaper) {
         std::map<std::string, double> costs = {{"coh", 10}, {"hzb", 10}, {"frustum", 1000}};
         costs[cheaper] = 8;
         std::vector<std::string> names;
+        names.reserve(8);
         for (int i = 0; i < 8; ++i) names.push_back(frame(costs));
         EXPECT_EQ(std::count(names.begin(), names.end(), "coh"), 4);
         EXPECT_EQ(std::count(names.begin(), names.end(), "hzb"), 4);

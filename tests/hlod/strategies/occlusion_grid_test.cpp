@@ -33,7 +33,7 @@ private:
     void forEach(const PixelRect& r, Visit visit) {
         for (int y = std::max(0, r.minY); y < std::min(kHeight, r.maxY); ++y)
             for (int x = std::max(0, r.minX); x < std::min(kWidth, r.maxX); ++x)
-                visit(pixels_[static_cast<size_t>(y * kWidth + x)]);
+                visit(pixels_[static_cast<size_t>(y) * kWidth + static_cast<size_t>(x)]);
     }
     std::vector<double> pixels_ = std::vector<double>(size_t{kWidth} * kHeight, kInfinite);
 };
