@@ -12,8 +12,10 @@
 #   --results FOLDER          writes there
 #
 # centre      plant 12M, interior 5M, lego-show-a; inside; 640x480; latency 0; all strategies;
-#             200 frames, 3 timed passes. frustum, whose frames cost ten of any other's, is set
-#             against bool and coh in a run of its own, with one timed pass of 60 frames
+#             200 frames, 3 timed passes (lego-show-a: one; its bytes in a run of coh alone).
+#             frustum, whose frames cost ten of any other's, is set against bool and coh in a run
+#             of its own, with one timed pass of 60 frames (lego-show-a: 20); auto against what it
+#             chooses between likewise, over all frames
 # variations  coh, bool, frustum over 60 frames, one timed pass: outside; 1024x768; paths at 4 times
 #             the speed; query latency 1, 2; the same cut in a sixteenth of the pixels (bool, simp,
 #             coh: what their times are beside shading); and the scenes city 10M, torus 10M (with auto), hospital,
@@ -178,10 +180,17 @@ quick() {
 
 centre() {
     local scene
-    for scene in plant interior lego-show-a; do
+    for scene in plant interior; do
         run $scene-walk $scene walk --strategy "${all#frustum,}" --repeats 3 --truth-every 4
         run $scene-walk-frustum $scene walk --strategy $few --frames 60 --repeats 1 --truth-every 0
+        run $scene-walk-auto $scene walk --strategy coh,hzb,auto --repeats 1 --truth-every 20 \
+            --no-settled
     done
+    # A frame of it costs ten of the others', a settled one more than a hundred.
+    scene=lego-show-a
+    run $scene-walk $scene walk --strategy "${all#frustum,}" --repeats 1 --truth-every 20 --no-settled
+    run $scene-walk-bytes $scene walk --strategy coh --repeats 0 --truth-every 0
+    run $scene-walk-frustum $scene walk --strategy $few --frames 20 --repeats 1 --truth-every 0
 }
 
 variations() {
@@ -194,8 +203,8 @@ variations() {
         run $scene-walk-speed4 $scene walk --strategy $few "${brief[@]}" --speed 4
         run $scene-walk-latency1 $scene walk --strategy $few "${brief[@]}" --query-latency 1
         run $scene-walk-latency2 $scene walk --strategy $few "${brief[@]}" --query-latency 2
-        run $scene-walk-pixels $scene walk --strategy bool,simp,coh "${brief[@]}" --size 160x120 \
-            --tau 0.25
+        run $scene-walk-pixels $scene walk --strategy bool,simp,coh --size 160x120 --tau 0.25 \
+            --repeats 3 --truth-every 0 --no-settled
         run $scene-walk-prefetch $scene walk --strategy coh --prefetch on --repeats 0 --truth-every 0
         run $scene-walk-disk500 $scene walk --strategy coh --prefetch on --repeats 0 \
             --truth-every 0 --no-settled --disk 500MB/s

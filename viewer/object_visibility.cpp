@@ -3,6 +3,7 @@
 namespace pagoda::viewer {
 
 void ObjectVisibility::want(Wish wish) {
+    if (!canHide()) return;                            // would wait for ever
     if (wish.kind == Kind::Isolate) waiting_.clear();  // whatever was hidden before
     waiting_.push_back(wish);
     objects_.wantTree();

@@ -15,6 +15,8 @@ public:
     // `objects` outlives it.
     explicit ObjectVisibility(ooc::ObjectReader& objects) : objects_(objects) {}
 
+    // False where there are too many objects for a tree: then the next three do nothing.
+    [[nodiscard]] bool canHide() const noexcept { return !objects_.hasTooManyForTree(); }
     // An object and all below it.
     void hide(uint32_t object) { want({Kind::Hide, object}); }
     void show(uint32_t object) { want({Kind::Show, object}); }

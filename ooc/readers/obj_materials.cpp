@@ -57,8 +57,13 @@ bool ObjMaterials::addLibrary(const std::filesystem::path& path) {
     lookedAt_.insert(path);
     std::error_code code;
     if (!std::filesystem::is_regular_file(path, code)) return false;
-    const SourceFile source(path);
-    TextStream text(source, nullptr);
+    std::optional<SourceFile> source;
+    try {
+        source.emplace(path);
+    } catch (const Error&) {  // one that may not be read does not cost the shape either
+        return false;
+    }
+    TextStream text(*source, nullptr);
     std::optional<std::string> name;
     Material material;
     double dissolve = 1.0;

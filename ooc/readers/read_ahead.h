@@ -10,7 +10,8 @@
 
 namespace pagoda::ooc {
 
-// Of a large file the beginning: the rest of the cache belongs to others. Does not wait.
+// Of a large file the beginning: the rest of the cache belongs to others. Waits for no data, but
+// for room in the disk's queue where that is full: not for a thread that draws.
 inline void readAhead(const File& file) {
     constexpr uint64_t kMostBytes = uint64_t{1} << 30;
     (void)::posix_fadvise(file.descriptor(), 0,

@@ -73,7 +73,7 @@ def of_runs(folder, key_a, run_a, key_b, run_b):
 def best_against_auto(folder, table):
     cells, verdicts = [], []
     for name, report in folder.reports.items():
-        if folder.run(name, "auto") is None or len(report["runs"]) < 3:
+        if folder.run(name, "auto") is None or len(report["runs"]) < 3 or f"{name}-auto" in folder.reports:
             continue
         others = [run for run in report["runs"] if run["strategy"] != "auto"]
         best = min(others, key=lambda run: run["cpu_ms"]["mean"])["strategy"]

@@ -119,6 +119,8 @@ std::optional<ModelCache::Stamp> ModelCache::stampOf(const fs::path& path) {
     struct stat status {};
     // Folders cannot be read, and opening a pipe would wait for ever: as if there were nothing.
     if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
+    // So is what may not be read.
+    if (::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) != 0) return std::nullopt;
     return Stamp{.sizeBytes = static_cast<uint64_t>(status.st_size),
                  .inode = static_cast<uint64_t>(status.st_ino),
                  .modifiedNs = nanoseconds(status.st_mtim),
@@ -130,18 +132,24 @@ fs::path ModelCache::knownPath(const fs::path& path) const {
            fmt::format("{:016x}.json", hashOfText(fs::absolute(path).lexically_normal().string()));
 }
 
+std::optional<ModelCache::Stamp> ModelCache::rememberedStamp(const json& entry) {
+    try {
+        return Stamp{.sizeBytes = entry.at("size").get<uint64_t>(),
+                     .inode = entry.at("inode").get<uint64_t>(),
+                     .modifiedNs = entry.at("modified_ns").get<int64_t>(),
+                     .changedNs = entry.at("changed_ns").get<int64_t>()};
+    } catch (const json::exception&) {  // someone else's
+        return std::nullopt;
+    }
+}
+
 std::optional<uint64_t> ModelCache::knownHash(const Source& source) const {
     const auto entry = readJson(knownPath(source.path));
     if (!entry) return std::nullopt;
-    const auto number = [&](const char* name) { return entry->value(name, int64_t{-1}); };
     try {
-        const Stamp stamp{.sizeBytes = static_cast<uint64_t>(number("size")),
-                          .inode = entry->value("inode", uint64_t{0}),
-                          .modifiedNs = number("modified_ns"),
-                          .changedNs = number("changed_ns")};
-        const bool isSame =
-            stamp == source.stamp && entry->value("path", std::string()) ==
-                                         fs::absolute(source.path).lexically_normal().string();
+        const bool isSame = rememberedStamp(*entry) == source.stamp &&
+                            entry->value("path", std::string()) ==
+                                fs::absolute(source.path).lexically_normal().string();
         if (isSame && entry->contains("hash")) return entry->at("hash").get<uint64_t>();
     } catch (const json::exception&) {  // someone else's
     }
@@ -160,7 +168,7 @@ void ModelCache::remember(const Source& source) const {
 }
 
 // Of the whole file; each block's hash is the next one's seed.
-uint64_t ModelCache::hashOf(const Source& source, Progress* progress) const {
+uint64_t ModelCache::hashOf(const Source& source, Progress& progress) const {
     const File file = File::openForReading(source.path);
     std::vector<std::byte> block(kHashBlockBytes);
     uint64_t hash = source.stamp.sizeBytes;
@@ -169,9 +177,8 @@ uint64_t ModelCache::hashOf(const Source& source, Progress* progress) const {
         if (got == 0) return hash;
         hash = hash64(std::span(block).first(got), hash);
         offset += got;
-        if (progress == nullptr) continue;
-        progress->advance(got);
-        progress->check();
+        progress.advance(got);
+        progress.check();
     }
 }
 
@@ -207,7 +214,7 @@ std::optional<fs::path> ModelCache::findKnown(const std::vector<hlod::InputSpec>
         sources_.push_back(source);
     }
     key_ = keyOf(inputs);
-    return lookUp();
+    return lookUp(nullptr);
 }
 
 std::optional<fs::path> ModelCache::find(const std::vector<hlod::InputSpec>& inputs,
@@ -223,7 +230,7 @@ std::optional<fs::path> ModelCache::find(const std::vector<hlod::InputSpec>& inp
     progress.beginStage("look in the cache", bytes, "B");
     for (Source& source : sources_) {
         const auto known = knownHash(source);
-        source.hash = known ? *known : hashOf(source, &progress);
+        source.hash = known ? *known : hashOf(source, progress);
         if (stampOf(source.path) != source.stamp) {
             throw Error(source.path.string(), "", "is being written", "open it when it is whole");
         }
@@ -231,15 +238,15 @@ std::optional<fs::path> ModelCache::find(const std::vector<hlod::InputSpec>& inp
     }
     key_ = keyOf(inputs);
     foundNs_ = options_.nowNs();
-    return lookUp();
+    return lookUp(&progress);
 }
 
-std::optional<fs::path> ModelCache::lookUp() {
+std::optional<fs::path> ModelCache::lookUp(Progress* progress) {
     const fs::path database = databaseOf(key_), entry = options_.folder / (key_ + ".json");
     std::error_code code;
     if (!fs::is_regular_file(database, code)) return std::nullopt;
     const auto made = readJson(entry);
-    if (!made || !areCompanionsSame(*made)) return std::nullopt;
+    if (!made || !areCompanionsSame(*made, progress)) return std::nullopt;
     try {
         (void)ooc::Database::open(database);
     } catch (const Error&) {  // damaged, or of another version: it is made anew
@@ -250,7 +257,7 @@ std::optional<fs::path> ModelCache::lookUp() {
 }
 
 // Companions are named from the first input's folder.
-bool ModelCache::areCompanionsSame(const json& made) const {
+bool ModelCache::areCompanionsSame(const json& made, Progress* progress) const {
     const fs::path folder = fs::absolute(sources_.front().path).parent_path();
     try {
         for (const auto& [name, hash] : made.at("companions").items()) {
@@ -259,7 +266,8 @@ bool ModelCache::areCompanionsSame(const json& made) const {
             if (!stamp) continue;
             Source source{.path = folder / name, .stamp = *stamp};
             const auto known = knownHash(source);
-            source.hash = known ? *known : hashOf(source, nullptr);
+            if (!known && progress == nullptr) return false;  // it would have to be read
+            source.hash = known ? *known : hashOf(source, *progress);
             if (!known) remember(source);
             if (hash.get<uint64_t>() != source.hash) return false;
         }
@@ -275,10 +283,10 @@ fs::path ModelCache::buildTarget() const {
     return options_.folder / "building" / (key_ + ".pagoda");
 }
 
-fs::path ModelCache::take(const std::vector<fs::path>& companions,
+fs::path ModelCache::take(const std::vector<fs::path>& companions, Progress& progress,
                           std::vector<std::string>& notes) {
     try {
-        return moveIn(companions, notes);
+        return moveIn(companions, progress, notes);
     } catch (...) {
         std::error_code code;
         fs::remove(buildTarget(), code);  // a whole database that nothing would ever count
@@ -286,7 +294,7 @@ fs::path ModelCache::take(const std::vector<fs::path>& companions,
     }
 }
 
-fs::path ModelCache::moveIn(const std::vector<fs::path>& companions,
+fs::path ModelCache::moveIn(const std::vector<fs::path>& companions, Progress& progress,
                             std::vector<std::string>& notes) {
     const auto refuse = [](const fs::path& changed) {
         throw Error(changed.string(), "", "has changed while it was read", "open it again");
@@ -295,7 +303,7 @@ fs::path ModelCache::moveIn(const std::vector<fs::path>& companions,
     fs::path database = databaseOf(key_);
     std::error_code code;
     fs::remove(database, code);
-    writeEntry(companions);
+    writeEntry(companions, progress);
     for (const Source& source : sources_) {
         if (stampOf(source.path) != source.stamp) refuse(source.path);
     }
@@ -310,10 +318,16 @@ fs::path ModelCache::moveIn(const std::vector<fs::path>& companions,
                     "check the folder, or name another one with --cache");
     }
     trim(notes);
+    forgetChanged();
     return database;
 }
 
-void ModelCache::writeEntry(const std::vector<fs::path>& companions) const {
+void ModelCache::writeEntry(const std::vector<fs::path>& companions, Progress& progress) const {
+    uint64_t bytes = 0;
+    for (const fs::path& companion : companions) {
+        if (const auto stamp = stampOf(companion)) bytes += stamp->sizeBytes;
+    }
+    progress.beginStage("remember what it was made of", bytes, "B");
     const fs::path folder = fs::absolute(sources_.front().path).parent_path();
     json named = json::object();
     for (const fs::path& companion : companions) {
@@ -322,7 +336,7 @@ void ModelCache::writeEntry(const std::vector<fs::path>& companions) const {
         json& hash = named[path.lexically_relative(folder.lexically_normal()).string()];
         if (!stamp) continue;
         Source source{.path = path, .stamp = *stamp};
-        source.hash = hashOf(source, nullptr);
+        source.hash = hashOf(source, progress);
         remember(source);
         hash = source.hash;
     }
@@ -372,9 +386,31 @@ void ModelCache::trim(std::vector<std::string>& notes) const {
     }
 }
 
+// Of files that are gone or no longer what they were.
+void ModelCache::forgetChanged() const {
+    std::error_code code;
+    for (const fs::directory_entry& file :
+         fs::directory_iterator(options_.folder / "known", code)) {
+        const auto entry = readJson(file.path());
+        const auto remembered = entry ? rememberedStamp(*entry) : std::nullopt;
+        if (!remembered || !entry->contains("path") || !(*entry)["path"].is_string()) continue;
+        if (stampOf((*entry)["path"].get<std::string>()) != remembered) {
+            fs::remove(file.path(), code);
+        }
+    }
+}
+
 // What a process that was killed left: its lock died with it (DatabaseWriter holds one).
 void ModelCache::removeAbandoned() const {
     std::error_code code;
+    for (const fs::directory_entry& file : fs::directory_iterator(options_.folder, code)) {
+        if (file.path().extension() != ".json") continue;
+        fs::path database = file.path();
+        // A young one may be another process's that is about to move its database in.
+        const auto age = fs::file_time_type::clock::now() - file.last_write_time(code);
+        if (code || age < kAbandonedAfter) continue;
+        if (!fs::exists(database.replace_extension(".pagoda"), code)) fs::remove(file.path(), code);
+    }
     for (const fs::directory_entry& file :
          fs::directory_iterator(options_.folder / "building", code)) {
         const int descriptor =

@@ -57,7 +57,7 @@ public:
     // and removes it, when an input or companion has changed since find(). Removes the least
     // recently opened ones beyond `mostBytes`, never this one; appends a line for each to `notes`.
     [[nodiscard]] std::filesystem::path take(const std::vector<std::filesystem::path>& companions,
-                                             std::vector<std::string>& notes);
+                                             Progress& progress, std::vector<std::string>& notes);
 
 private:
     // What tells that a file is the same as before without reading it.
@@ -72,18 +72,22 @@ private:
         uint64_t hash = 0;
     };
     [[nodiscard]] static std::optional<Stamp> stampOf(const std::filesystem::path& path);
+    // Nothing: not an entry of known/.
+    [[nodiscard]] static std::optional<Stamp> rememberedStamp(const nlohmann::json& entry);
     [[nodiscard]] std::filesystem::path knownPath(const std::filesystem::path& path) const;
     [[nodiscard]] std::optional<uint64_t> knownHash(const Source& source) const;
     void remember(const Source& source) const;
-    [[nodiscard]] uint64_t hashOf(const Source& source, Progress* progress) const;
+    [[nodiscard]] uint64_t hashOf(const Source& source, Progress& progress) const;
     [[nodiscard]] std::string keyOf(const std::vector<hlod::InputSpec>& inputs) const;
     [[nodiscard]] std::filesystem::path databaseOf(const std::string& key) const;
-    [[nodiscard]] std::optional<std::filesystem::path> lookUp();
-    [[nodiscard]] bool areCompanionsSame(const nlohmann::json& made) const;
+    // Without `progress` nothing is read: what is not known counts as changed.
+    [[nodiscard]] std::optional<std::filesystem::path> lookUp(Progress* progress);
+    [[nodiscard]] bool areCompanionsSame(const nlohmann::json& made, Progress* progress) const;
     [[nodiscard]] std::filesystem::path moveIn(const std::vector<std::filesystem::path>& companions,
-                                               std::vector<std::string>& notes);
-    void writeEntry(const std::vector<std::filesystem::path>& companions) const;
+                                               Progress& progress, std::vector<std::string>& notes);
+    void writeEntry(const std::vector<std::filesystem::path>& companions, Progress& progress) const;
     void trim(std::vector<std::string>& notes) const;
+    void forgetChanged() const;
     void removeAbandoned() const;
 
     Options options_;

@@ -33,6 +33,7 @@ void PreviewMaker::endSample() {
 // What a sample has shown stays: the reading meets it again, which changes no mean.
 void PreviewMaker::beginSurvey(ooc::UpAxis databaseUp) {
     up_ = axisOf(databaseUp);
+    sampledTriangles_ = sketch_.trianglesSeen();
     objects_ = 0;
     colours_.clear();
     nextTriangles_ = std::max(nextTriangles_, kFirstTriangles);
@@ -71,6 +72,9 @@ void PreviewMaker::showNow(bool isWhole) {
     auto picture = std::make_shared<viewer::Preview>(sketch_.picture(isSample_));
     picture->up = up_;
     picture->isWhole = isWhole;
+    // What was sampled is met again: until the reading has caught up, it is what is known.
+    picture->trianglesSeen =
+        std::max(sampledTriangles_, sketch_.trianglesSeen() - sampledTriangles_);
     {
         const std::scoped_lock lock(pictureMutex_);
         picture_ = std::move(picture);

@@ -45,6 +45,7 @@ private:
     bool isSample_ = false;
     hlod::UpAxis up_ = hlod::UpAxis::Z;
     uint32_t objects_ = 0;
+    uint64_t sampledTriangles_ = 0;  // before the survey
     std::vector<uint32_t> colours_;  // by material
     uint64_t nextTriangles_ = 0;     // a picture is due when so many were seen
     std::chrono::steady_clock::time_point earliest_{}, nextTime_{};  // of the next picture

@@ -176,7 +176,7 @@ void RawOpening::build(ModelCache& cache) {
     options.watcher = &previews_;
     const hlod::BuildReport report = hlod::buildDatabase(options, progress_);
     std::vector<std::string> notes;
-    database_ = cache.take(report.companions, notes);
+    database_ = cache.take(report.companions, progress_, notes);
     for (const std::string& note : notes) progress_.note(note);
     isBuilt_ = true;
 }

@@ -59,9 +59,11 @@ void ObjectPanel::showSearch(Inspection& inspection) {
 void ObjectPanel::showButtons(Inspection& inspection, Asked& asked) {
     ObjectVisibility& visibility = inspection.visibility();
     ImGui::BeginDisabled(!selected_);
+    ImGui::BeginDisabled(!visibility.canHide());
     if (ImGui::Button("hide")) visibility.hide(*selected_);
     ImGui::SameLine();
     if (ImGui::Button("alone")) visibility.isolate(*selected_);
+    ImGui::EndDisabled();
     ImGui::SameLine();
     if (ImGui::Button("look at")) asked.frame = selected_;
     ImGui::EndDisabled();
@@ -74,6 +76,7 @@ void ObjectPanel::showRow(Inspection& inspection, uint32_t object, const char* n
     ObjectVisibility& visibility = inspection.visibility();
     bool isShown = !visibility.isHidden(object);
     ImGui::PushID(static_cast<int>(object));
+    ImGui::BeginDisabled(!visibility.canHide());
     if (ImGui::Checkbox("##shown", &isShown)) {
         if (isShown) {
             visibility.show(object);
@@ -81,6 +84,7 @@ void ObjectPanel::showRow(Inspection& inspection, uint32_t object, const char* n
             visibility.hide(object);
         }
     }
+    ImGui::EndDisabled();
     ImGui::SameLine();
     const ImGuiCol colour = isShown ? ImGuiCol_Text : ImGuiCol_TextDisabled;
     ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(colour));
@@ -92,7 +96,7 @@ void ObjectPanel::showRow(Inspection& inspection, uint32_t object, const char* n
 void ObjectPanel::showTree(Inspection& inspection) {
     ooc::ObjectReader& objects = inspection.objects();
     if (objects.hasTooManyForTree()) {
-        ImGui::TextDisabled("too many for a tree: find a name");
+        ImGui::TextDisabled("too many for a tree or to hide: find a name");
         return;
     }
     objects.wantTree();

@@ -69,7 +69,9 @@ bool ViewApp::runObjects(Command command) {
             return true;
         case Command::HideObject:
         case Command::IsolateObject:
-            if (!selected) {
+            if (!inspection_->visibility().canHide()) {
+                say("too many objects to hide any");
+            } else if (!selected) {
                 say("click an object first");
             } else if (command == Command::HideObject) {
                 inspection_->visibility().hide(*selected);

@@ -7,8 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <fstream>
+#include <iterator>
 #include <set>
+#include <stdexcept>
 
 namespace pagoda::tools {
 namespace {
@@ -50,7 +54,7 @@ struct Rig {
         build.target = cache.buildTarget();
         build.force = true;
         build.threads = 1;
-        return cache.take(hlod::buildDatabase(build, progress).companions, notes);
+        return cache.take(hlod::buildDatabase(build, progress).companions, progress, notes);
     }
 };
 
@@ -136,7 +140,7 @@ TEST(ModelCache, AnInputThatChangesWhileItIsBuiltLeavesNothing) {
     ASSERT_FALSE(cache.find(inputs, rig.progress));
     write(cache.buildTarget(), "as if built");
     write(model, quad(0.75));
-    EXPECT_THROW((void)cache.take({}, rig.notes), Error);
+    EXPECT_THROW((void)cache.take({}, rig.progress, rig.notes), Error);
     EXPECT_FALSE(fs::exists(cache.buildTarget()));
     EXPECT_FALSE(cache.find(inputs, rig.progress));
 }
@@ -154,7 +158,7 @@ TEST(ModelCache, AMaterialFileThatChangesWhileItIsBuiltLeavesNothing) {
     do {
         write(materials, "newmtl m\n");
     } while (fs::last_write_time(materials) <= fs::last_write_time(cache.buildTarget()));
-    EXPECT_THROW((void)cache.take({materials}, rig.notes), Error);
+    EXPECT_THROW((void)cache.take({materials}, rig.progress, rig.notes), Error);
     EXPECT_FALSE(fs::exists(cache.buildTarget()));
 }
 
@@ -165,6 +169,94 @@ TEST(ModelCache, AFolderAmongTheCompanionsIsAsIfItWereNotThere) {
     const fs::path first = rig.open(rig.folder / "a.obj");
     EXPECT_EQ(rig.open(rig.folder / "a.obj"), first);
     EXPECT_EQ(rig.builds, 1);
+}
+
+// Root may read all: it works as another user meanwhile.
+class OrdinaryUser {
+public:
+    explicit OrdinaryUser(const fs::path& folder) {
+        fs::permissions(folder, fs::perms::all);
+        if (before_ == 0 && ::seteuid(65534) != 0) throw std::runtime_error("cannot be another");
+    }
+    ~OrdinaryUser() { (void)!::seteuid(before_); }
+    OrdinaryUser(const OrdinaryUser&) = delete;
+    OrdinaryUser& operator=(const OrdinaryUser&) = delete;
+
+private:
+    uid_t before_ = ::geteuid();
+};
+
+TEST(ModelCache, ACompanionThatMayNotBeReadIsAsIfItWereNotThere) {
+    Rig rig;
+    const OrdinaryUser user(rig.folder / "");
+    write(rig.folder / "a.obj", quad(0.5));
+    write(rig.folder / "a.mtl", "newmtl m\n");
+    fs::permissions(rig.folder / "a.mtl", fs::perms::none);
+    const fs::path first = rig.open(rig.folder / "a.obj");
+    EXPECT_EQ(rig.open(rig.folder / "a.obj"), first);
+    EXPECT_EQ(rig.builds, 1);
+    fs::permissions(rig.folder / "a.mtl", fs::perms::owner_read);
+    (void)rig.open(rig.folder / "a.obj");
+    EXPECT_EQ(rig.builds, 2) << "it can be read now";
+}
+
+TEST(ModelCache, ReadingACompanionIsCountedAndCanBeStopped) {
+    struct Counting : Progress {
+        void advance(uint64_t units) override { bytes += units; }
+        uint64_t bytes = 0;
+    };
+    Rig rig;
+    const fs::path known = rig.folder / "cache" / "known";
+    write(rig.folder / "a.obj", quad(0.5));
+    (void)rig.open(rig.folder / "a.obj");
+    ASSERT_EQ(std::distance(fs::directory_iterator(known), fs::directory_iterator()), 1);
+    const fs::path ofModel = fs::directory_iterator(known)->path();
+    write(rig.folder / "a.mtl", "newmtl m\n");
+    (void)rig.open(rig.folder / "a.obj");
+    const auto forgetCompanion = [&] {
+        for (const auto& file : fs::directory_iterator(known)) {
+            if (file.path() != ofModel) fs::remove(file.path());
+        }
+    };
+    const auto inputs = hlod::expandInputs({(rig.folder / "a.obj").string()});
+    ModelCache cache(rig.options);
+    EXPECT_TRUE(cache.findKnown(inputs));
+    forgetCompanion();
+    EXPECT_FALSE(cache.findKnown(inputs)) << "it would have to be read";
+    Counting counting;
+    EXPECT_TRUE(cache.find(inputs, counting));
+    EXPECT_EQ(counting.bytes, fs::file_size(rig.folder / "a.mtl"));
+    forgetCompanion();
+    Progress stopped;
+    stopped.requestStop();
+    EXPECT_THROW((void)cache.find(inputs, stopped), Interrupted);
+}
+
+TEST(ModelCache, WhatIsKnownOfFilesThatAreGoneIsForgotten) {
+    Rig rig;
+    const auto countKnown = [&] {
+        return std::distance(fs::directory_iterator(rig.folder / "cache" / "known"),
+                             fs::directory_iterator());
+    };
+    write(rig.folder / "a.obj", quad(0.5));
+    write(rig.folder / "b.obj", quad(0.6));
+    (void)rig.open(rig.folder / "a.obj");
+    EXPECT_EQ(countKnown(), 1);
+    fs::remove(rig.folder / "a.obj");
+    (void)rig.open(rig.folder / "b.obj");
+    EXPECT_EQ(countKnown(), 1) << "b's, not a's";
+}
+
+TEST(ModelCache, AnEntryWithoutItsDatabaseIsRemovedOnceItIsOld) {
+    Rig rig;
+    const fs::path old = rig.folder / "cache" / "old.json",
+                   young = rig.folder / "cache" / "young.json";
+    write(old, "{}");
+    write(young, "{}");
+    fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(48));
+    ModelCache cache(rig.options);
+    EXPECT_FALSE(fs::exists(old));
+    EXPECT_TRUE(fs::exists(young));
 }
 
 TEST(ModelCache, AnEntryThatCannotBeWrittenLeavesNeitherTheNewNorTheOldDatabase) {
