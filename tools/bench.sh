@@ -12,9 +12,9 @@
 #   --results FOLDER          writes there
 #
 # centre      plant 12M, interior 5M, lego-show-a; inside; 640x480; latency 0; all strategies;
-#             200 frames, 3 timed passes (lego-show-a: one; its bytes in a run of coh alone).
+#             200 frames, 3 timed passes (lego-show-a: one; its bytes in 60 frames of coh alone).
 #             frustum, whose frames cost ten of any other's, is set against bool and coh in a run
-#             of its own, with one timed pass of 60 frames (lego-show-a: 20); auto against what it
+#             of its own, with one timed pass of 60 frames (lego-show-a: 6, no bytes); auto against what it
 #             chooses between likewise, over all frames
 # variations  coh, bool, frustum over 60 frames, one timed pass: outside; 1024x768; paths at 4 times
 #             the speed; query latency 1, 2; the same cut in a sixteenth of the pixels (bool, simp,
@@ -189,8 +189,9 @@ centre() {
     # A frame of it costs ten of the others', a settled one more than a hundred.
     scene=lego-show-a
     run $scene-walk $scene walk --strategy "${all#frustum,}" --repeats 1 --truth-every 20 --no-settled
-    run $scene-walk-bytes $scene walk --strategy coh --repeats 0 --truth-every 0
-    run $scene-walk-frustum $scene walk --strategy $few --frames 20 --repeats 1 --truth-every 0
+    run $scene-walk-bytes $scene walk --strategy coh --frames 60 --repeats 0 --truth-every 0
+    run $scene-walk-frustum $scene walk --strategy $few --frames 6 --repeats 1 --truth-every 0 \
+        --no-settled
 }
 
 variations() {
